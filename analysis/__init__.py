@@ -1,0 +1,1 @@
+"""Statistics: reading the export, measures, tests, figures, the report."""

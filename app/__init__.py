@@ -1,0 +1,1 @@
+"""The study: web server, database, export, command line."""

@@ -1,0 +1,1 @@
+"""Decision science: mazes, MDPs, legible policies, observers, rollouts, stimuli."""
