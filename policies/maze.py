@@ -1,0 +1,247 @@
+"""The maze world: a grid of cells, walls on the edges between them, lettered goals."""
+
+import string
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+
+from policies.errors import MazeError
+
+FAILURE = 0.15
+"""Probability that an action fails and the robot stays where it is."""
+
+
+class Action(IntEnum):
+    """The actions in the order of every index `a`."""
+
+    UP = 0
+    DOWN = 1
+    LEFT = 2
+    RIGHT = 3
+    NOOP = 4
+
+
+ACTION_SETS: Mapping[str, tuple[Action, ...]] = MappingProxyType(
+    {"udlr": tuple(Action)[:4], "udlrn": tuple(Action)}
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Maze:
+    """A maze of `rows` x `cols` cells, every one a state, numbered row-major from the top left.
+
+    `goals` maps letters, in order, to states. `wall_right[i, j]` stands between cells (i, j) and
+    (i, j + 1), `wall_below[i, j]` between (i, j) and (i + 1, j); the border is always closed.
+    """
+
+    rows: int
+    cols: int
+    goals: Mapping[str, int]
+    wall_right: NDArray[np.bool_]
+    wall_below: NDArray[np.bool_]
+
+    @property
+    def states(self) -> int:
+        """Number of states S."""
+        return self.rows * self.cols
+
+    @property
+    def letters(self) -> tuple[str, ...]:
+        """The goals' letters in the order of every index `n`."""
+        return tuple(self.goals)
+
+    @cached_property
+    def successors(self) -> NDArray[np.int64]:
+        """The cell an action leads to when it does not fail: `successors[x, a]`, shape (S, 5)."""
+        cells = np.arange(self.states).reshape(self.rows, self.cols)
+        after = np.repeat(cells[:, :, None], len(Action), axis=2)
+        after[:, :-1, Action.RIGHT] += ~self.wall_right
+        after[:, 1:, Action.LEFT] -= ~self.wall_right
+        after[:-1, :, Action.DOWN] += np.where(self.wall_below, 0, self.cols)
+        after[1:, :, Action.UP] -= np.where(self.wall_below, 0, self.cols)
+        return after.reshape(self.states, len(Action))
+
+    @cached_property
+    def edges(self) -> coo_array:
+        """The graph of neighbouring cells without a wall between, shape (S, S), weight 1."""
+        x, a = np.nonzero(self.successors != np.arange(self.states)[:, None])
+        return coo_array((np.ones(len(x)), (x, self.successors[x, a])), (self.states, self.states))
+
+    def cell(self, state: int) -> tuple[int, int]:
+        """Row and column of a state, 0-based."""
+        return divmod(state, self.cols)
+
+    def goal_index(self, letter: str) -> int:
+        """Index `n` of a goal's letter; MazeError when the maze has no such goal."""
+        if letter not in self.goals:
+            raise MazeError(f"expected a goal of the maze ({' '.join(self.goals)}), came {letter!r}")
+        return self.letters.index(letter)
+
+
+def read_maze(path: Path) -> Maze:
+    """Read a maze file; MazeError names file, line and column."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise MazeError(f"{path}: expected a readable maze text file: {error}") from error
+    return parse_maze(text, source=str(path))
+
+
+def parse_maze(text: str, source: str = "maze") -> Maze:
+    """Parse the text format of README's "maze files"; MazeError says source:line:column."""
+    lines = text.splitlines()
+    _check_shape(lines, source)
+    rows, cols = len(lines) // 2, len(lines[0]) // 4
+    goals: dict[str, int] = {}
+    wall_right = np.zeros((rows, cols - 1), bool)
+    wall_below = np.zeros((rows - 1, cols), bool)
+    for line, column, expected in _slots(rows, cols):
+        found = lines[line][column : column + len(expected[0])]
+        if expected == _CELL:
+            if found not in _CELL:
+                raise _unexpected(source, line, column, "a cell: '.' or a capital letter", found)
+            if found in goals:
+                raise _unexpected(source, line, column, "a letter not used before", found)
+            if found != ".":
+                goals[found] = line // 2 * cols + column // 4
+        elif found not in expected:
+            wanted = " or ".join(repr(sign) for sign in expected)
+            raise _unexpected(source, line, column, wanted, found)
+        elif expected == _BESIDE:
+            wall_right[line // 2, column // 4 - 1] = found == "|"
+        elif expected == _BELOW:
+            wall_below[line // 2 - 1, column // 4] = found == "---"
+    if not goals:
+        raise MazeError(f"{source}: expected at least one goal (a capital letter), found none")
+    maze = Maze(rows, cols, MappingProxyType(dict(sorted(goals.items()))), wall_right, wall_below)
+    _check_reachable(maze, source)
+    return maze
+
+
+def format_maze(maze: Maze) -> str:
+    """The text of a maze; `parse_maze` reads the same maze back."""
+    letter_at = {state: letter for letter, state in maze.goals.items()}
+    border = "+---" * maze.cols + "+"
+    lines = [border]
+    for i in range(maze.rows):
+        cells = [letter_at.get(i * maze.cols + j, ".") for j in range(maze.cols)]
+        beside = ["|" if wall else " " for wall in maze.wall_right[i]] + ["|"]
+        lines.append("|" + "".join(f" {c} {w}" for c, w in zip(cells, beside, strict=True)))
+        if i < maze.rows - 1:
+            below = ["---" if wall else "   " for wall in maze.wall_below[i]]
+            lines.append("+" + "+".join(below) + "+")
+    return "\n".join([*lines, border]) + "\n"
+
+
+def random_maze(
+    rows: int, cols: int, goals: int, rng: np.random.Generator, openness: float = 0.2
+) -> Maze:
+    """A connected maze: a random spanning tree, then a share `openness` of the other walls removed.
+
+    `goals` cells get the letters A, B, ...; MazeError when the size or the counts are impossible.
+    """
+    if rows < 1 or cols < 1 or not 1 <= goals <= min(26, rows * cols):
+        raise MazeError(
+            f"expected at least 1 x 1 cells and 1 to {min(26, rows * cols)} goals, "
+            f"came {rows} x {cols} cells and {goals} goals"
+        )
+    if not 0 <= openness <= 1:
+        raise MazeError(f"expected openness from 0 to 1, came {openness}")
+    cells = np.arange(rows * cols).reshape(rows, cols)
+    pairs = np.concatenate(
+        [
+            np.stack([cells[:, :-1].ravel(), cells[:, 1:].ravel()], axis=1),
+            np.stack([cells[:-1].ravel(), cells[1:].ravel()], axis=1),
+        ]
+    )
+    wall = np.ones(len(pairs), bool)
+    wall[_spanning_tree(pairs, rows * cols, rng)] = False
+    standing = np.flatnonzero(wall)
+    wall[rng.choice(standing, round(openness * len(standing)), replace=False)] = False
+    letters = string.ascii_uppercase[:goals]
+    places = rng.choice(rows * cols, goals, replace=False)
+    beside = rows * (cols - 1)
+    return Maze(
+        rows,
+        cols,
+        MappingProxyType(dict(zip(letters, places.tolist(), strict=True))),
+        wall[:beside].reshape(rows, cols - 1),
+        wall[beside:].reshape(rows - 1, cols),
+    )
+
+
+_CELL = tuple("." + string.ascii_uppercase)
+_CORNER, _BLANK, _POST, _LID = ("+",), (" ",), ("|",), ("---",)
+_BESIDE, _BELOW = ("|", " "), ("---", "   ")
+
+
+def _slots(rows: int, cols: int) -> Iterator[tuple[int, int, tuple[str, ...]]]:
+    """Every place of the text, in reading order: line, column (0-based), what may stand there."""
+    for line in range(2 * rows + 1):
+        wall_line = line % 2 == 0
+        for j in range(cols):
+            if wall_line:
+                yield line, 4 * j, _CORNER
+                yield line, 4 * j + 1, _LID if line in (0, 2 * rows) else _BELOW
+            else:
+                yield line, 4 * j, _POST if j == 0 else _BESIDE
+                yield line, 4 * j + 1, _BLANK
+                yield line, 4 * j + 2, _CELL
+                yield line, 4 * j + 3, _BLANK
+        yield line, 4 * cols, _CORNER if wall_line else _POST
+
+
+def _check_shape(lines: list[str], source: str) -> None:
+    if len(lines) < 3 or len(lines) % 2 == 0:
+        raise MazeError(
+            f"{source}:{len(lines) + 1}:1: expected an odd number of lines, 3 or more, "
+            f"ending with the border, found {len(lines)} lines"
+        )
+    width = len(lines[0])
+    if width < 5 or width % 4 != 1:
+        raise MazeError(
+            f"{source}:1:{width + 1}: expected a border of '+---' repeated and a last '+', "
+            f"found {width} characters"
+        )
+    for number, line in enumerate(lines, start=1):
+        if len(line) != width:
+            column = min(len(line), width) + 1
+            raise MazeError(
+                f"{source}:{number}:{column}: expected {width} characters as in line 1, "
+                f"found {len(line)}"
+            )
+
+
+def _check_reachable(maze: Maze, source: str) -> None:
+    _, component = connected_components(maze.edges, directed=False)
+    for letter, goal in maze.goals.items():
+        cut_off = np.flatnonzero(component != component[goal])
+        if len(cut_off):
+            line, column = (2 * maze.cell(goal)[0] + 2, 4 * maze.cell(goal)[1] + 3)
+            i, j = maze.cell(int(cut_off[0]))
+            raise MazeError(
+                f"{source}:{line}:{column}: expected goal {letter} to be reachable from every "
+                f"cell, found no way from the cell at {2 * i + 2}:{4 * j + 3}"
+            )
+
+
+def _unexpected(source: str, line: int, column: int, expected: str, found: str) -> MazeError:
+    return MazeError(f"{source}:{line + 1}:{column + 1}: expected {expected}, found {found!r}")
+
+
+def _spanning_tree(
+    pairs: NDArray[np.int64], states: int, rng: np.random.Generator
+) -> NDArray[np.int64]:
+    """Indices of the pairs of cells that a random spanning tree joins."""
+    order = rng.permutation(len(pairs))
+    weights = coo_array((order + 1.0, (pairs[:, 0], pairs[:, 1])), (states, states))
+    tree = minimum_spanning_tree(weights.tocsr())
+    return np.argsort(order)[tree.data.astype(np.int64) - 1]

@@ -1,0 +1,163 @@
+"""PoLMDP: policies that are legible because the reward is the observer's posterior."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.special import log_softmax, logsumexp
+
+from policies.certificate import Certificate, certify
+from policies.errors import ModelError
+from policies.maze import ACTION_SETS, FAILURE, Action, Maze
+from policies.mdp import MDP, Array, maze_transitions, uniform_over
+from policies.solvers import goal_values, shortest_path_policy, solve, ties
+
+Formulation = Literal["reward", "cost"]
+Variant = Literal["as_printed", "proper_posterior", "advantage"]
+ActionSet = Literal["udlr", "udlrn"]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Parameters of a legible policy; the defaults are the preset `paper`.
+
+    beta: inverse temperature of the posterior, on unscaled Q. gamma: discount in [0, 1).
+    formulation: `reward` (the paper's) or `cost` (provably arrives). guard: put shortest-path
+    actions where the certificate fails.
+    """
+
+    beta: float = 0.5
+    gamma: float = 0.9
+    formulation: Formulation = "reward"
+    variant: Variant = "as_printed"
+    actions: ActionSet = "udlrn"
+    guard: bool = False
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.beta) and self.beta > 0):
+            raise ModelError(f"expected a finite beta above 0, came {self.beta}")
+        if not 0 <= self.gamma < 1:
+            raise ModelError(f"expected gamma in [0, 1), came {self.gamma}")
+        for name, value, allowed in (
+            ("formulation", self.formulation, get_args(Formulation)),
+            ("variant", self.variant, get_args(Variant)),
+            ("actions", self.actions, get_args(ActionSet)),
+        ):
+            if value not in allowed:
+                raise ModelError(f"expected {name} in {', '.join(allowed)}; came {value!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class LegiblePlan:
+    """All that was computed for one goal: values, rewards, both policies, and what is proved.
+
+    `q[n, x, a]`, `r_leg[n, x, a]`, `v_legible[x]` (of the unguarded policy; an expected cost in
+    the cost formulation), `policy_optimal[x, a]`, `policy_legible[x, a]`; `repaired[x]` marks
+    the states where the guard put shortest-path actions.
+    """
+
+    maze: Maze
+    goal: str
+    parameters: Parameters
+    q: Array
+    r_leg: Array
+    v_legible: Array
+    policy_optimal: Array
+    policy_legible: Array
+    repaired: NDArray[np.bool_]
+    certificate: Certificate
+
+
+def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) -> LegiblePlan:
+    """Plan a legible policy for one of the maze's goals (paper, section 3)."""
+    parameters = parameters or Parameters()
+    n, target = maze.goal_index(goal), maze.goals[goal]
+    actions = ACTION_SETS[parameters.actions]
+    q = goal_values(maze, parameters.gamma, actions)
+    log_r = log_legible_rewards(q, parameters.beta, parameters.variant)
+    optimal = shortest_path_policy(maze, target, actions)
+    if parameters.formulation == "reward":
+        mdp = MDP(maze_transitions(maze, actions), np.exp(log_r[n]), parameters.gamma)
+        solution = solve(mdp)
+        v, legible = solution.v, solution.policy
+    else:
+        others = np.delete(log_r, n, axis=0)
+        cost = np.exp(logsumexp(others, axis=0)) if len(others) else np.zeros_like(log_r[n])
+        v, legible = _least_cost(maze, target, cost, actions)
+        legible[target] = optimal[target]
+    repaired = np.zeros(maze.states, bool)
+    if parameters.guard:
+        legible, repaired = guard(maze, target, legible, optimal, actions)
+    certificate = certify(maze, legible, target, actions)
+    return LegiblePlan(
+        maze, goal, parameters, q, np.exp(log_r), v, optimal, legible, repaired, certificate
+    )
+
+
+def legible_rewards(
+    q: Array, beta: float, variant: Variant = "as_printed", prior: Array | None = None
+) -> Array:
+    """r_leg[n, x, a], the observer's posterior of goal n after action a in x (paper eqs. 5-6)."""
+    return np.exp(log_legible_rewards(q, beta, variant, prior))
+
+
+def log_legible_rewards(
+    q: Array, beta: float, variant: Variant = "as_printed", prior: Array | None = None
+) -> Array:
+    """Logarithm of `legible_rewards`, shape (N, S, A), computed without leaving log space.
+
+    `as_printed` weighs goals by exp(beta Q_n); `proper_posterior` by P(a | x, n), normalised
+    over actions first; `advantage` by exp(beta (Q_n - V_n)).
+    """
+    weight = {
+        "as_printed": lambda: beta * q,
+        "proper_posterior": lambda: log_softmax(beta * q, axis=2),
+        "advantage": lambda: beta * (q - q.max(axis=2, keepdims=True)),
+    }[variant]()
+    if prior is not None:
+        if prior.shape != q.shape[:1] or (prior <= 0).any():
+            raise ModelError(f"expected a prior above 0 for each of {len(q)} goals, came {prior}")
+        weight = weight + np.log(prior)[:, None, None]
+    log_r: Array = log_softmax(weight, axis=0)
+    return log_r
+
+
+def guard(
+    maze: Maze, goal: int, policy: Array, optimal: Array, actions: Sequence[Action]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Put the shortest-path actions where certification fails, and certify again, until it holds.
+
+    Ends: every round repairs at least one more state, and a policy repaired everywhere is the
+    optimal one. Returns the policy (S, A) and the repaired states (S,).
+    """
+    repaired = np.zeros(maze.states, bool)
+    while True:
+        guarded = np.where(repaired[:, None], optimal, policy)
+        fails = ~certify(maze, guarded, goal, actions).holds_at
+        if not fails.any():
+            return guarded, repaired
+        new = fails & ~repaired
+        repaired |= new if new.any() else True
+
+
+def _least_cost(
+    maze: Maze, goal: int, cost: Array, actions: Sequence[Action]
+) -> tuple[Array, Array]:
+    """Least expected undiscounted cost until the goal, (S,), and the policy that attains it.
+
+    Folding a failed action's self-loop leaves a deterministic graph with edges cost / .85, so
+    a label-setting shortest path is exact.
+    """
+    after = maze.successors[:, list(actions)]
+    moves = after != np.arange(maze.states)[:, None]
+    x, a = np.nonzero(moves)
+    backwards = coo_array(
+        (cost[x, a] / (1 - FAILURE), (after[x, a], x)), (maze.states, maze.states)
+    )
+    v: Array = dijkstra(backwards.tocsr(), indices=goal)
+    q = cost + FAILURE * v[:, None] + (1 - FAILURE) * v[after]
+    return v, uniform_over(ties(-q))

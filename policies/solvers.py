@@ -1,0 +1,104 @@
+"""Exact solvers: one for any MDP, one in closed form for goals in a maze."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import eye_array
+from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.linalg import spsolve
+
+from policies.errors import ModelError
+from policies.maze import FAILURE, Action, Maze
+from policies.mdp import MDP, Array, policy_transitions, uniform_over
+
+TIE = 1e-12
+"""Relative difference up to which two action values are a tie."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Optimal values and policy of an MDP.
+
+    `q[x, a]`, `v[x]`, `policy[x, a]` (ties share uniformly); `bound` is the certified largest
+    error of `v`: the Bellman residual / (1 - gamma).
+    """
+
+    q: Array
+    v: Array
+    policy: Array
+    bound: float
+
+
+def solve(mdp: MDP) -> Solution:
+    """Policy iteration with exact evaluation; an action is replaced only by one better than a tie.
+
+    Source: Howard (1960); Puterman (1994), section 6.4. The tie tolerance is what makes it end
+    on mazes, where many actions are exactly equal.
+    """
+    states = np.arange(len(mdp.r))
+    chosen = mdp.r.argmax(axis=1)
+    while True:
+        policy = np.zeros_like(mdp.r)
+        policy[states, chosen] = 1
+        v = evaluate(mdp, policy)
+        q = mdp.q(v)
+        better = ~ties(q)[states, chosen]
+        if not better.any():
+            break
+        chosen = np.where(better, q.argmax(axis=1), chosen)
+    bound = float(np.abs(q.max(axis=1) - v).max()) / (1 - mdp.gamma)
+    return Solution(q, v, uniform_over(ties(q)), bound)
+
+
+def evaluate(mdp: MDP, policy: Array) -> Array:
+    """The exact value of a policy: solves (I - gamma P_pi) v = r_pi, shape (S,)."""
+    r = (policy * mdp.r).sum(axis=1)
+    chain = policy_transitions(mdp.P, policy)
+    v: Array = spsolve((eye_array(len(r)) - mdp.gamma * chain).tocsc(), r)
+    return v
+
+
+def ties(q: Array) -> NDArray[np.bool_]:
+    """The actions whose value is the state's best, up to a relative difference of `TIE`, (S, A)."""
+    best = q.max(axis=1, keepdims=True)
+    return q >= best - TIE * np.abs(best)
+
+
+def distances(maze: Maze) -> Array:
+    """Fewest moves from every state to every goal, shape (N, S)."""
+    moves: Array = dijkstra(maze.edges.tocsr(), unweighted=True, indices=list(maze.goals.values()))
+    return moves
+
+
+def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
+    """Q*_n of every goal's MDP in closed form, `q[n, x, a]`, shape (N, S, A).
+
+    The only chance in a maze is the self-loop of a failed action, so with d the distance to the
+    goal and kappa = .85 gamma / (1 - .15 gamma), V_n(x) = kappa^d V_n(goal); V_n(goal) is
+    1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into).
+    """
+    if not 0 <= gamma < 1:
+        raise ModelError(f"expected gamma in [0, 1), came {gamma}")
+    kappa = (1 - FAILURE) * gamma / (1 - FAILURE * gamma)
+    after = maze.successors[:, list(actions)]
+    goals = np.array(list(maze.goals.values()))
+    can_stay = (after[goals] == goals[:, None]).any(axis=1)
+    loop = np.where(can_stay, gamma, gamma * (FAILURE + (1 - FAILURE) * kappa))
+    v = kappa ** distances(maze) / (1 - loop)[:, None]
+    q: Array = gamma * (FAILURE * v[:, :, None] + (1 - FAILURE) * v[:, after])
+    q[np.arange(len(goals)), goals] += 1
+    return q
+
+
+def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Array:
+    """The optimal policy of one goal, (S, A): actions that lower the distance; at the goal, stay.
+
+    Read off the distances, never off Q: far from the goal the Q values of all actions are equal
+    to machine precision.
+    """
+    d = dijkstra(maze.edges.tocsr(), unweighted=True, indices=goal)
+    after = maze.successors[:, list(actions)]
+    nearest = d[after].min(axis=1, keepdims=True)
+    return uniform_over(d[after] == nearest)
