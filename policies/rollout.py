@@ -37,10 +37,13 @@ def draw_rollout(
     """Sample a ~ policy[x], x' ~ P until the goal is entered or `max_steps` have passed."""
     if not 0 <= start < maze.states:
         raise ModelError(f"expected a start from 0 to {maze.states - 1}, came {start}")
+    # Plain uniforms and an inverse distribution: the same draws whatever numpy's `choice` does.
+    upto = np.cumsum(policy, axis=1)
+    upto /= upto[:, -1:]
     states, taken = [start], list[int]()
     while states[-1] != goal and len(taken) < max_steps:
         x = states[-1]
-        a = int(rng.choice(len(actions), p=policy[x]))
+        a = int(np.searchsorted(upto[x], rng.random(), side="right"))
         fails = rng.random() < FAILURE
         taken.append(a)
         states.append(x if fails else int(maze.successors[x, actions[a]]))
