@@ -1,3 +1,4 @@
+from .cli import commands as commands
 from .codebook import code_book as code_book
 from .columns import Column as Column
 from .columns import Kind as Kind
@@ -16,5 +17,9 @@ from .errors import TableError as TableError
 from .measures import correct as correct
 from .measures import prediction_time_s as prediction_time_s
 from .measures import score as score
+from .publish import Results as Results
+from .publish import analyse_path as analyse_path
+from .reader import Dataset as Dataset
+from .reader import read_dataset as read_dataset
 from .tables import read_table as read_table
 from .tables import write_table as write_table

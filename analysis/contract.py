@@ -11,6 +11,8 @@ TREATMENT = "polmdp"
 REFERENCE = "optimal"
 CONDITIONS = (TREATMENT, REFERENCE)
 """The arms, treatment first: a policy that shows its goal, and one that only reaches it."""
+LABELS = {TREATMENT: "PoLMDP", REFERENCE: "optimal"}
+"""How reports and figures write the conditions."""
 
 STATUSES = (
     "about_you",

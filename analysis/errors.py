@@ -44,6 +44,6 @@ class EmptyArmError(AnalysisError):
     `arm` is the condition's name, `measure` what was to be compared.
     """
 
-    def __init__(self, arm: str, measure: str) -> None:
+    def __init__(self, arm: str, measure: str, note: str = "") -> None:
         self.arm, self.measure = arm, measure
-        super().__init__(f"condition {arm}: expected at least one value of {measure}, got none")
+        super().__init__(f"condition {arm}: expected at least one {measure}, got none{note}")

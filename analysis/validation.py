@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import polars as pl
@@ -26,8 +26,13 @@ class Problem:
     got: str
 
 
-def raise_first(file: str, problems: Sequence[Problem]) -> None:
-    """Raise the problem in the earliest row as a TableError that counts the others."""
+def raise_first(
+    file: str, problems: Sequence[Problem], names: Mapping[str, str] | None = None
+) -> None:
+    """Raise the problem in the earliest row as a TableError that counts the others.
+
+    `names` maps columns of the contract to what the file calls them, where that differs.
+    """
     if not problems:
         return
     first = min(problems, key=lambda problem: problem.rows[0])
@@ -36,7 +41,7 @@ def raise_first(file: str, problems: Sequence[Problem]) -> None:
         first.expected,
         first.got,
         row=first.rows[0],
-        column=first.column,
+        column=(names or {}).get(first.column, first.column),
         further=sum(len(problem.rows) for problem in problems) - 1,
     )
 
@@ -120,4 +125,8 @@ def _is_json(text: str) -> bool:
 
 
 def _shown(value: object) -> str:
-    return "nothing" if value is None else repr(value) if isinstance(value, str) else str(value)
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(value) if isinstance(value, str) else str(value)

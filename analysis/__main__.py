@@ -1,0 +1,17 @@
+"""Run the analysis without the rest of Goalguess: python -m analysis analyse PATH."""
+
+import typer
+
+from .cli import commands
+
+alone = typer.Typer(no_args_is_help=True, add_completion=False)
+alone.add_typer(commands)
+
+
+@alone.callback()
+def main() -> None:
+    """Statistics of a study made with Goalguess."""
+
+
+if __name__ == "__main__":
+    alone(prog_name="python -m analysis")

@@ -1,0 +1,93 @@
+"""The block of statistics that the paper reports, from checked data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from numpy.typing import NDArray
+
+from .contract import CONDITIONS, REFERENCE, TREATMENT
+from .demographics import Demographics, demographics
+from .estimates import Mean, Share, mean
+from .paper_tests import (
+    ChiSquare,
+    MannWhitney,
+    Normality,
+    TwoByTwo,
+    chi_square,
+    mann_whitney,
+    normality,
+)
+from .reader import Dataset
+from .sample import Sample, sample
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Correct guesses: the counts, the share per condition, the test."""
+
+    table: TwoByTwo
+    arms: dict[str, Share]
+    test: ChiSquare
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A measure compared by ranks: mean and normality per condition, the test."""
+
+    arms: dict[str, Mean]
+    normality: dict[str, Normality]
+    test: MannWhitney
+
+
+@dataclass(frozen=True)
+class PaperBlock:
+    """Everything of the paper's block; `demographics` is None without a participants table."""
+
+    sample: Sample
+    correct: Accuracy
+    prediction_time: Ranked
+    confidence: Ranked
+    demographics: Demographics | None
+
+
+def as_in_paper(data: Dataset) -> PaperBlock:
+    """Compute the paper's statistics; EmptyArmError if a condition has no value of a measure."""
+    return PaperBlock(
+        sample=sample(data),
+        correct=_accuracy(data),
+        prediction_time=_ranked(data, "prediction_time_s", "s"),
+        confidence=_ranked(data, "confidence", "scale points"),
+        demographics=demographics(data),
+    )
+
+
+def values_of(data: Dataset, arm: str, measure: str) -> NDArray[np.float64]:
+    """Return one condition's values of a measure, trial by trial, NaN where missing."""
+    column = data.trials.filter(pl.col("condition") == arm)[measure]
+    return column.cast(pl.Float64).to_numpy()
+
+
+def _accuracy(data: Dataset) -> Accuracy:
+    count = {arm: values_of(data, arm, "correct") for arm in CONDITIONS}
+    table = TwoByTwo(
+        treatment_correct=int((count[TREATMENT] == 1).sum()),
+        treatment_wrong=int((count[TREATMENT] == 0).sum()),
+        reference_correct=int((count[REFERENCE] == 1).sum()),
+        reference_wrong=int((count[REFERENCE] == 0).sum()),
+        n_missing_treatment=int(np.isnan(count[TREATMENT]).sum()),
+        n_missing_reference=int(np.isnan(count[REFERENCE]).sum()),
+    )
+    return Accuracy(table, dict(zip(CONDITIONS, table.arms, strict=True)), chi_square(table))
+
+
+def _ranked(data: Dataset, measure: str, unit: str) -> Ranked:
+    values = {arm: values_of(data, arm, measure) for arm in CONDITIONS}
+    test = mann_whitney(values[TREATMENT], values[REFERENCE], measure)
+    return Ranked(
+        arms={arm: mean(values[arm], unit) for arm in CONDITIONS},
+        normality={arm: normality(values[arm]) for arm in CONDITIONS},
+        test=test,
+    )

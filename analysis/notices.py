@@ -1,0 +1,93 @@
+"""What a reader of the numbers must be told: warnings of the tests, and of the data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .as_in_paper import PaperBlock
+from .contract import CONDITIONS, LABELS
+from .paper_tests import CONSTANT_OUTCOME, DEGENERATE_MARGIN, TOO_FEW_VALUES
+from .reader import Dataset
+
+_TEXTS = {
+    DEGENERATE_MARGIN: "all guesses were alike, so chi-square is not defined and p is set to 1",
+    CONSTANT_OUTCOME: "all values are equal, so the test is not defined",
+    TOO_FEW_VALUES: "fewer than three values, so the test is not defined",
+}
+_FEW_EXPECTED = 5
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A warning: a code for programs, what it is about, and a sentence for people."""
+
+    code: str
+    about: str
+    text: str
+
+
+def notices(data: Dataset, block: PaperBlock) -> list[Notice]:
+    """Collect what limits the numbers, the gravest first."""
+    return _about_selection(data) + _about_tests(block) + _about_gaps(data, block)
+
+
+def _about_selection(data: Dataset) -> list[Notice]:
+    marked = f"{data.simulated} simulated and {data.preview} preview trials"
+    if not data.simulated and not data.preview:
+        return []
+    if data.with_simulated:
+        text = f"Not a result: {marked} are in the numbers, as asked for."
+        return [Notice("simulated_included", "trials", text)]
+    return [Notice("simulated_left_out", "trials", f"Left out: {marked}.")]
+
+
+def _about_tests(block: PaperBlock) -> list[Notice]:
+    found = [_of_test(code, "correct guesses") for code in block.correct.test.warnings]
+    if not found and block.correct.test.min_expected < _FEW_EXPECTED:
+        smallest = block.correct.test.min_expected
+        text = (
+            f"Correct guesses: the smallest expected count is {smallest:.1f}, below "
+            f"{_FEW_EXPECTED}; the p of chi-square is rough."
+        )
+        found.append(Notice("small_expected_count", "correct guesses", text))
+    for name, ranked in (
+        ("time of prediction", block.prediction_time),
+        ("confidence", block.confidence),
+    ):
+        found += [_of_test(code, name) for code in ranked.test.warnings]
+        for arm in CONDITIONS:
+            about = f"normality of {name}, {LABELS[arm]}"
+            found += [_of_test(code, about) for code in ranked.normality[arm].warnings]
+    return found
+
+
+def _of_test(code: str, about: str) -> Notice:
+    return Notice(code, about, f"{about[0].upper()}{about[1:]}: {_TEXTS[code]}.")
+
+
+def _about_gaps(data: Dataset, block: PaperBlock) -> list[Notice]:
+    found = []
+    for name, missing in (
+        ("correct guesses", block.correct.test.n_missing),
+        ("time of prediction", block.prediction_time.test.n_missing),
+        ("confidence", block.confidence.test.n_missing),
+    ):
+        if missing:
+            text = f"{name.capitalize()}: missing in {missing} trials, left out of its numbers."
+            found.append(Notice("missing_values", name, text))
+    incomplete = sum(arm.incomplete for arm in block.sample.arms.values())
+    if incomplete:
+        text = (
+            f"{incomplete} participants are incomplete ({block.sample.incomplete_means}); "
+            "the trials they answered are analysed."
+        )
+        found.append(Notice("incomplete_participants", "participants", text))
+    if data.participants is None:
+        text = "No participants table came with these trials, so there are no demographics."
+        found.append(Notice("no_participants_table", "participants", text))
+    if data.renamed:
+        pairs = ", ".join(f"{name} as {meant}" for name, meant in data.renamed)
+        found.append(
+            Notice("columns_renamed", "trials", f"Columns read under other names: {pairs}.")
+        )
+    return found

@@ -1,0 +1,128 @@
+"""Rules between the cells of the trials table, and between trials and participants."""
+
+from __future__ import annotations
+
+import polars as pl
+
+from .derive import correct_guesses, prediction_times_s, scores
+from .validation import Problem, broken
+
+TIME_TOLERANCE_S = 0.001
+"""Recorded and derived times may differ by what the page's clock resolves."""
+
+SCORE_TOLERANCE = 0.01
+"""Recorded and derived scores may differ by what that does to a score."""
+
+
+def trial_problems(trials: pl.DataFrame) -> list[Problem]:
+    """Return what contradicts itself among the trials; `trials` is typed and has `ROW`.
+
+    A rule is skipped where a column it needs is not in the frame, and for rows where a cell it
+    needs is missing.
+    """
+    found = _two_conditions(trials)
+    has = set(trials.columns)
+    if {"guess", "goal", "correct"} <= has:
+        found += _contradicted_guess(trials)
+    if {"stop_time_s", "length_s"} <= has:
+        found += broken(
+            trials,
+            pl.col("stop_time_s") > pl.col("length_s"),
+            "stop_after_end",
+            "stop_time_s",
+            "a stop no later than length_s",
+            "stop_time_s",
+            "length_s",
+        )
+    if {"stop_time_s", "length_s", "reached_end"} <= has:
+        found += broken(
+            trials,
+            pl.col("reached_end") & (pl.col("length_s") - pl.col("stop_time_s") > TIME_TOLERANCE_S),
+            "end_before_length",
+            "reached_end",
+            "stop_time_s equal to length_s where the end was reached",
+            "stop_time_s",
+            "length_s",
+        )
+    if {"stop_time_s", "length_s", "correct"} <= has:
+        found += _contradicted_measures(trials)
+    return found
+
+
+def membership_problems(
+    trials: pl.DataFrame, participants: pl.DataFrame, file: str
+) -> list[Problem]:
+    """Return the trials of nobody in the participants table, or of another kind there.
+
+    `file` names the participants table. Condition, simulated and preview must agree: a pilot's
+    trial marked as real would slip into the analysis.
+    """
+    same = [name for name in ("condition", "simulated", "preview") if name in trials.columns]
+    known = participants.select("participant", pl.col(same).name.suffix(" there"), known=True)
+    joined = trials.join(known, on="participant", how="left", maintain_order="left")
+    found = broken(
+        joined,
+        pl.col("known").is_null(),
+        "unknown_participant",
+        "participant",
+        f"a participant listed in {file}",
+    )
+    for name in same:
+        found += broken(
+            joined,
+            pl.col("known") & pl.col(name).ne_missing(pl.col(f"{name} there")),
+            f"other_{name}",
+            name,
+            f"the same as in {file}",
+            name,
+            f"{name} there",
+        )
+    return found
+
+
+def _two_conditions(trials: pl.DataFrame) -> list[Problem]:
+    first = pl.col("condition").drop_nulls().first().over("participant")
+    return broken(
+        trials.with_columns(earlier=first),
+        pl.col("condition") != pl.col("earlier"),
+        "two_conditions",
+        "condition",
+        "one condition per participant",
+        "participant",
+        "condition",
+        "earlier",
+    )
+
+
+def _contradicted_guess(trials: pl.DataFrame) -> list[Problem]:
+    derived = correct_guesses(trials["guess"], trials["goal"])
+    return broken(
+        trials.with_columns(derived.alias("derived")),
+        pl.col("correct") != pl.col("derived"),
+        "correct_contradicts_guess",
+        "correct",
+        "true if and only if guess and goal are the same",
+        "correct",
+        "guess",
+        "goal",
+    )
+
+
+def _contradicted_measures(trials: pl.DataFrame) -> list[Problem]:
+    stop, length, correct = (trials[name] for name in ("stop_time_s", "length_s", "correct"))
+    found: list[Problem] = []
+    for name, derived, tolerance in (
+        ("prediction_time_s", prediction_times_s(stop, length, correct), TIME_TOLERANCE_S),
+        ("score", scores(correct, stop, length), SCORE_TOLERANCE),
+    ):
+        if name in trials.columns:
+            found += broken(
+                trials.with_columns(derived.alias("derived")),
+                (pl.col(name) - pl.col("derived")).abs() > tolerance,
+                f"{name}_contradicts_definition",
+                name,
+                "the value that its definition gives",
+                name,
+                "derived",
+            )
+    return found

@@ -1,0 +1,71 @@
+"""Numbers as they are printed: APA style, never a p of .000."""
+
+from __future__ import annotations
+
+from .paper_tests import ChiSquare, MannWhitney, Normality
+
+ALPHA = 0.05
+
+
+def format_p(p: float | None, relation: str = "=") -> str:
+    """Write a p value with three decimals, with more where rounding would carry it over .05.
+
+    Below .001 and above .999 it is a bound, None is NA; `relation` is "<=" or ">=" where p
+    itself is one.
+    """
+    if p is None:
+        return "p = NA"
+    if p < 0.001:
+        return "p < .001"
+    if p >= 0.9995:
+        return "p > .999"
+    decimals = 3
+    while p < ALPHA and round(p, decimals) >= ALPHA:
+        decimals += 1
+    return f"p {relation} {without_zero(p, decimals)}"
+
+
+def without_zero(value: float, decimals: int) -> str:
+    """Write a number that cannot exceed 1 without its leading zero, as APA asks."""
+    return f"{value:.{decimals}f}".replace("0.", ".", 1)
+
+
+def format_u(u: float) -> str:
+    """Write a U as a whole number, with the half that ties may leave."""
+    return f"{u:.0f}" if u == int(u) else f"{u:.1f}"
+
+
+def percent(share: float) -> str:
+    """Write a share as a percentage with one decimal."""
+    return f"{100 * share:.1f} %"
+
+
+def chi_square_statistic(test: ChiSquare) -> str:
+    """Write the statistic with its degrees of freedom: chi2(1) = 48.864."""
+    return f"chi2({test.df}) = {'NA' if test.chi2 is None else format(test.chi2, '.3f')}"
+
+
+def chi_square_apa(test: ChiSquare) -> str:
+    """Write the test in one line: chi2(1) = 48.864, p < .001, N = 1500, phi = .180."""
+    phi = "NA" if test.phi is None else without_zero(test.phi, 3)
+    return f"{chi_square_statistic(test)}, {format_p(test.p)}, N = {test.n}, phi = {phi}"
+
+
+def mann_whitney_apa(test: MannWhitney) -> str:
+    """Write the test in one line, with the smaller U as the paper prints it and the treatment's."""
+    z = "NA" if test.z is None else f"{test.z:.2f}"
+    return (
+        f"U = {format_u(test.u_smaller)}, {format_p(test.p)}, z = {z}, "
+        f"n = {test.n_treatment} and {test.n_reference}, "
+        f"rank-biserial r = {without_zero(test.rank_biserial, 3)} "
+        f"(U of the treatment = {format_u(test.u_treatment)})"
+    )
+
+
+def normality_apa(test: Normality) -> str:
+    """Write the test in one line: W or A2, and p."""
+    if test.statistic is None:
+        return f"{test.method}: not defined, n = {test.n}"
+    symbol = "W" if test.method == "Shapiro-Wilk" else "A2"
+    p = format_p(test.p, test.p_relation)
+    return f"{test.method}: {symbol} = {test.statistic:.4f}, {p}, n = {test.n}"
