@@ -51,7 +51,7 @@ def certify(maze: Maze, policy: Array, goal: int, actions: Sequence[Action]) -> 
         within = chain[on_the_way][:, on_the_way]
         leave = (eye_array(len(on_the_way)) - within).tocsc()
         steps[on_the_way] = spsolve(leave, np.ones(len(on_the_way)))
-    fewest = dijkstra(maze.edges.tocsr(), unweighted=True, indices=goal) / (1 - FAILURE)
+    fewest = dijkstra(maze.edges.tocsr(), unweighted=True, indices=[goal])[0] / (1 - FAILURE)
     stretch = np.divide(steps, fewest, out=np.ones(maze.states), where=~at_goal)
     return Certificate(arrives, steps, stretch)
 

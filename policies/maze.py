@@ -82,14 +82,16 @@ class Maze:
     def goal_index(self, letter: str) -> int:
         """Index `n` of a goal's letter; MazeError when the maze has no such goal."""
         if letter not in self.goals:
-            raise MazeError(f"expected a goal of the maze ({' '.join(self.goals)}), came {letter!r}")
+            raise MazeError(
+                f"expected a goal of the maze ({' '.join(self.goals)}), came {letter!r}"
+            )
         return self.letters.index(letter)
 
 
 def read_maze(path: Path) -> Maze:
     """Read a maze file; MazeError names file, line and column."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise MazeError(f"{path}: expected a readable maze text file: {error}") from error
     return parse_maze(text, source=str(path))

@@ -28,11 +28,13 @@ class MDP:
     def __post_init__(self) -> None:
         S, A = self.r.shape
         if self.P.shape != (A * S, S):
-            raise ModelError(f"expected P of shape {(A * S, S)} for r {(S, A)}, came {self.P.shape}")
+            raise ModelError(
+                f"expected P of shape {(A * S, S)} for r {(S, A)}, came {self.P.shape}"
+            )
         if not 0 <= self.gamma < 1:
             raise ModelError(f"expected gamma in [0, 1), came {self.gamma}")
         off = np.abs(self.P.sum(axis=1) - 1)
-        if self.P.nnz and self.P.data.min() < 0 or off.max() > 1e-9:
+        if (self.P.nnz and self.P.data.min() < 0) or off.max() > 1e-9:
             a, x = divmod(int(off.argmax()), S)
             raise ModelError(f"expected P(. | x, a) to be a distribution; not so at x={x}, a={a}")
         if not np.isfinite(self.r).all():
@@ -61,7 +63,7 @@ def uniform_over(best: NDArray[np.bool_]) -> Array:
 
 
 def maze_transitions(maze: Maze, actions: Sequence[Action]) -> csr_array:
-    """P of the maze, shape (A * S, S): an action fails with probability .15, a wall always stops."""
+    """P of the maze, (A * S, S): an action fails with probability .15, a wall always stops."""
     x = np.tile(np.arange(maze.states), len(actions))
     y = maze.successors[:, list(actions)].T.ravel()
     row = np.arange(len(x))
@@ -72,7 +74,7 @@ def maze_transitions(maze: Maze, actions: Sequence[Action]) -> csr_array:
 
 
 def maze_mdp(maze: Maze, goal: int, gamma: float, actions: Sequence[Action]) -> MDP:
-    """The MDP of one goal: reward 1 for every action taken in the goal's cell, else 0 (paper 4.1)."""
+    """One goal's MDP: reward 1 for every action taken in its cell, else 0 (paper, 4.1)."""
     r = np.zeros((maze.states, len(actions)))
     r[goal] = 1.0
     return MDP(maze_transitions(maze, actions), r, gamma)

@@ -1,6 +1,7 @@
 """A Bayesian observer who watches a robot and believes in goals."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,7 @@ def movement_beliefs(
     belief = np.full(N, 1 / N) if prior is None else prior / prior.sum()
     after = maze.successors[:, list(actions)]
     beliefs = [belief]
-    for x, y in zip(states[:-1], states[1:], strict=True):
+    for x, y in pairwise(states):
         if y != x and y not in after[x]:
             raise ModelError(f"expected a step to a neighbouring cell, came {x} to {y}")
         moved = (1 - FAILURE) * (after[x] == y) + FAILURE * (x == y)

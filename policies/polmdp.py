@@ -83,7 +83,7 @@ def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) ->
     if parameters.formulation == "reward":
         mdp = MDP(maze_transitions(maze, actions), np.exp(log_r[n]), parameters.gamma)
         solution = solve(mdp)
-        v, legible = solution.v, solution.policy
+        v, legible = solution.v, towards(ties(solution.q), optimal)
     else:
         others = np.delete(log_r, n, axis=0)
         cost = np.exp(logsumexp(others, axis=0)) if len(others) else np.zeros_like(log_r[n])
@@ -96,6 +96,16 @@ def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) ->
     return LegiblePlan(
         maze, goal, parameters, q, np.exp(log_r), v, optimal, legible, repaired, certificate
     )
+
+
+def towards(tied: NDArray[np.bool_], optimal: Array) -> Array:
+    """Share each state's probability over its tied actions (S, A), first those on shortest paths.
+
+    A step of a shortest path ties with another action only where the rewards are equal to
+    machine precision (one goal, a saturated posterior); there the robot would walk at random.
+    """
+    shortest = tied & (optimal > 0)
+    return uniform_over(np.where(shortest.any(axis=1, keepdims=True), shortest, tied))
 
 
 def legible_rewards(
@@ -113,11 +123,11 @@ def log_legible_rewards(
     `as_printed` weighs goals by exp(beta Q_n); `proper_posterior` by P(a | x, n), normalised
     over actions first; `advantage` by exp(beta (Q_n - V_n)).
     """
-    weight = {
-        "as_printed": lambda: beta * q,
-        "proper_posterior": lambda: log_softmax(beta * q, axis=2),
-        "advantage": lambda: beta * (q - q.max(axis=2, keepdims=True)),
-    }[variant]()
+    weight = beta * q
+    if variant == "proper_posterior":
+        weight = log_softmax(weight, axis=2)
+    elif variant == "advantage":
+        weight = weight - weight.max(axis=2, keepdims=True)
     if prior is not None:
         if prior.shape != q.shape[:1] or (prior <= 0).any():
             raise ModelError(f"expected a prior above 0 for each of {len(q)} goals, came {prior}")
@@ -150,7 +160,8 @@ def _least_cost(
     """Least expected undiscounted cost until the goal, (S,), and the policy that attains it.
 
     Folding a failed action's self-loop leaves a deterministic graph with edges cost / .85, so
-    a label-setting shortest path is exact.
+    a label-setting shortest path is exact. Costs below machine precision tie with standing
+    still; of tied actions only those that make headway are kept, so the goal is always reached.
     """
     after = maze.successors[:, list(actions)]
     moves = after != np.arange(maze.states)[:, None]
@@ -158,6 +169,12 @@ def _least_cost(
     backwards = coo_array(
         (cost[x, a] / (1 - FAILURE), (after[x, a], x)), (maze.states, maze.states)
     )
-    v: Array = dijkstra(backwards.tocsr(), indices=goal)
-    q = cost + FAILURE * v[:, None] + (1 - FAILURE) * v[after]
-    return v, uniform_over(ties(-q))
+    v: Array = dijkstra(backwards.tocsr(), indices=[goal])[0]
+    tied = ties(-(cost + FAILURE * v[:, None] + (1 - FAILURE) * v[after]))
+    level = tied & moves & (v[after] <= v[:, None])
+    x, a = np.nonzero(level)
+    steps = coo_array((np.ones(len(x)), (after[x, a], x)), (maze.states, maze.states))
+    hops: Array = dijkstra(steps.tocsr(), unweighted=True, indices=[goal])[0]
+    headway = level & ((v[after] < v[:, None]) | (hops[after] < hops[:, None]))
+    headway[goal] = tied[goal]
+    return v, uniform_over(headway)

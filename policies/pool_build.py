@@ -11,6 +11,7 @@ from scipy import stats
 
 from policies.errors import StimulusError
 from policies.maze import ACTION_SETS, FAILURE, Maze, format_maze, parse_maze
+from policies.mdp import Array
 from policies.observer import OBSERVER_BETA, movement_beliefs, steps_until_sure
 from policies.pool import CONDITIONS, content_hash
 from policies.pool_rule import (
@@ -27,7 +28,6 @@ from policies.pool_rule import (
     generator,
     practice_fault,
 )
-from policies.rollout import Rollout
 
 SURE = 0.8
 """The belief in the true goal above which the predicted observer counts as sure."""
@@ -45,8 +45,8 @@ def build(seed: int, mazes: Mapping[str, Maze] | None = None) -> dict[str, str]:
         for i, c in enumerate(chosen, start=1)
     ]
     stimuli = [
-        stimulus(scenes, scenario["id"], condition, candidate, planner.draw(candidate, condition))
-        for scenario, candidate in zip(scenarios, chosen, strict=True)
+        stimulus(scenes, f"s{i:02}", condition, candidate, planner.draw(candidate, condition))
+        for i, candidate in enumerate(chosen, start=1)
         for condition in CONDITIONS
     ]
     pool = {
@@ -73,7 +73,7 @@ def passing(planner: Planner, name: str) -> list[Candidate]:
     return [
         candidate
         for candidate in candidates(planner.mazes[name], name)
-        if fault([planner.draw(candidate, condition) for condition in CONDITIONS]) is None
+        if fault([planner.draw(candidate, c) for c in CONDITIONS], planner.goal(candidate)) is None
     ]
 
 
@@ -81,14 +81,14 @@ def practice(planner: Planner, scenes: Mapping[str, Any]) -> dict[str, Any]:
     """The practice rollout, which belongs to neither condition."""
     tried = candidates(planner.mazes[PRACTICE_MAZE], PRACTICE_MAZE)
     for i in generator(planner.seed, "practice order").permutation(len(tried)):
-        draw = planner.draw(tried[i], PRACTICE_MAZE)
-        if practice_fault(draw) is None:
-            return stimulus(scenes, PRACTICE_MAZE, PRACTICE_MAZE, tried[i], draw)
+        cells = planner.draw(tried[i], PRACTICE_MAZE)
+        if practice_fault(cells, planner.goal(tried[i])) is None:
+            return stimulus(scenes, PRACTICE_MAZE, PRACTICE_MAZE, tried[i], cells)
     raise StimulusError("expected a practice rollout that keeps the rule, found none")
 
 
 def stimulus(
-    scenes: Mapping[str, Any], scenario: str, condition: str, candidate: Candidate, draw: Rollout
+    scenes: Mapping[str, Any], scenario: str, condition: str, candidate: Candidate, cells: list[int]
 ) -> dict[str, Any]:
     """A stimulus as the file holds it; its id is a hash of all that is shown and meant."""
     fields = {
@@ -96,7 +96,7 @@ def stimulus(
         "condition": condition,
         "maze": candidate.maze,
         "goal": candidate.goal,
-        "cells": draw.states.tolist(),
+        "cells": cells,
     }
     return {"id": content_hash([scenes[candidate.maze], fields])[:12], **fields}
 
@@ -119,7 +119,9 @@ def scene(maze: Maze) -> dict[str, Any]:
 
 def manifest(pool: Mapping[str, Any], planner: Planner) -> dict[str, Any]:
     """What the pool is, the rule it was drawn by, and how much sooner its legible half tells."""
-    curves = {s["id"]: belief_curve(planner, s["maze"], s["goal"], s["cells"]) for s in pool["stimuli"]}
+    curves = {
+        s["id"]: belief_curve(planner, s["maze"], s["goal"], s["cells"]) for s in pool["stimuli"]
+    }
     sure = {
         (s["scenario"], s["condition"]): steps_until_sure(curves[s["id"]][:, None], 0, SURE)
         for s in pool["stimuli"]
@@ -127,7 +129,7 @@ def manifest(pool: Mapping[str, Any], planner: Planner) -> dict[str, Any]:
     again = {}
     for s in pool["scenarios"]:
         candidate = Candidate(s["maze"], s["start"], s["goal"])
-        cells = planner.draw(candidate, SECOND_OPTIMAL).states.tolist()
+        cells = planner.draw(candidate, SECOND_OPTIMAL)
         curve = belief_curve(planner, s["maze"], s["goal"], cells)
         again[s["id"]] = steps_until_sure(curve[:, None], 0, SURE)
     names = [s["id"] for s in pool["scenarios"]]
@@ -167,7 +169,7 @@ def manifest(pool: Mapping[str, Any], planner: Planner) -> dict[str, Any]:
     }
 
 
-def belief_curve(planner: Planner, maze: str, goal: str, cells: Sequence[int]) -> np.ndarray:
+def belief_curve(planner: Planner, maze: str, goal: str, cells: Sequence[int]) -> Array:
     """The observer's belief in the true goal at steps 0 to T, shape (T + 1,)."""
     plan = planner.plan(maze, goal)
     actions = ACTION_SETS[PARAMETERS.actions]
@@ -175,7 +177,7 @@ def belief_curve(planner: Planner, maze: str, goal: str, cells: Sequence[int]) -
     return beliefs[:, plan.maze.goal_index(goal)]
 
 
-def mean_with_interval(values: np.ndarray) -> dict[str, float]:
+def mean_with_interval(values: Array) -> dict[str, float]:
     """Mean and its 95 % t interval."""
     mean, error = float(np.mean(values)), float(stats.sem(values))
     half = float(stats.t.ppf(0.975, len(values) - 1)) * error

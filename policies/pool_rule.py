@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from types import MappingProxyType
 
 import numpy as np
 
@@ -13,8 +12,7 @@ from policies.errors import StimulusError
 from policies.maze import ACTION_SETS, Maze
 from policies.mdp import Array
 from policies.polmdp import LegiblePlan, Parameters, plan_legible
-from policies.pool import CONDITIONS
-from policies.rollout import Rollout, draw_rollout
+from policies.rollout import draw_rollout
 
 MAZES = ("first", "second", "third", "fourth")
 PRACTICE_MAZE = "practice"
@@ -76,17 +74,22 @@ class Planner:
             PRACTICE_MAZE: (plan.policy_legible + plan.policy_optimal) / 2,
         }[condition]
 
-    def draw(self, candidate: Candidate, condition: str) -> Rollout:
-        """The one draw of a candidate under a condition."""
+    def goal(self, candidate: Candidate) -> int:
+        """The state of a candidate's goal."""
+        return self.mazes[candidate.maze].goals[candidate.goal]
+
+    def draw(self, candidate: Candidate, condition: str) -> list[int]:
+        """The cells of a candidate's one draw under a condition."""
         maze = self.mazes[candidate.maze]
-        return draw_rollout(
+        rollout = draw_rollout(
             maze,
             self.policy(candidate.maze, candidate.goal, condition),
             candidate.start,
-            maze.goals[candidate.goal],
+            self.goal(candidate),
             generator(self.seed, candidate.maze, candidate.start, candidate.goal, condition),
             ACTION_SETS[PARAMETERS.actions],
         )
+        return [int(x) for x in rollout.states]
 
 
 def generator(*key: object) -> np.random.Generator:
@@ -102,27 +105,27 @@ def candidates(maze: Maze, name: str) -> list[Candidate]:
     return [Candidate(name, x, letter) for x in starts for letter in maze.goals]
 
 
-def fault(draws: Sequence[Rollout]) -> str | None:
-    """How a pair of draws breaks the rule, or None if it keeps it."""
-    steps = [draw.steps for draw in draws]
-    if not all(draw.arrived for draw in draws):
-        return "expected both rollouts to arrive"
+def fault(pair: Sequence[Sequence[int]], goal: int) -> str | None:
+    """How the cells of a scenario's two rollouts break the rule, or None if they keep it."""
+    steps = [len(cells) - 1 for cells in pair]
+    if not all(_arrives(cells, goal) for cells in pair):
+        return "expected both rollouts to end on entering the goal"
     if min(steps) < STEPS[0] or max(steps) > STEPS[1]:
         return f"expected {STEPS[0]} to {STEPS[1]} steps, came {steps}"
     if max(steps) - min(steps) > STEPS_APART:
         return f"expected steps that differ by at most {STEPS_APART}, came {steps}"
-    if len({frozenset(draw.states.tolist()) for draw in draws}) == 1:
+    if len({frozenset(cells) for cells in pair}) == 1:
         return "expected rollouts that differ in the cells visited"
     return None
 
 
-def practice_fault(draw: Rollout) -> str | None:
-    """How the practice rollout breaks the rule, or None if it keeps it."""
-    if not draw.arrived or not PRACTICE_STEPS[0] <= draw.steps <= PRACTICE_STEPS[1]:
-        return (
-            f"expected practice to arrive in {PRACTICE_STEPS[0]} to {PRACTICE_STEPS[1]} steps, "
-            f"came {draw.steps}"
-        )
+def practice_fault(cells: Sequence[int], goal: int) -> str | None:
+    """How the cells of the practice rollout break the rule, or None if they keep it."""
+    steps = len(cells) - 1
+    if not _arrives(cells, goal):
+        return "expected the practice rollout to end on entering the goal"
+    if not PRACTICE_STEPS[0] <= steps <= PRACTICE_STEPS[1]:
+        return f"expected {PRACTICE_STEPS[0]} to {PRACTICE_STEPS[1]} steps, came {steps}"
     return None
 
 
@@ -151,3 +154,7 @@ def can_balance(used: Sequence[str], names: Sequence[str], left: int) -> bool:
     equal = (len(used) + left) / len(names)
     missing = sum(max(0, np.ceil(equal - FROM_EQUAL_USE) - counts[name]) for name in names)
     return missing <= left and all(counts[name] <= equal + FROM_EQUAL_USE for name in names)
+
+
+def _arrives(cells: Sequence[int], goal: int) -> bool:
+    return cells.index(goal) == len(cells) - 1 if goal in cells else False

@@ -35,19 +35,22 @@ def solve(mdp: MDP) -> Solution:
     """Policy iteration with exact evaluation; an action is replaced only by one better than a tie.
 
     Source: Howard (1960); Puterman (1994), section 6.4. The tie tolerance is what makes it end
-    on mazes, where many actions are exactly equal.
+    on mazes, where many actions are exactly equal; a choice that comes back ends it anyhow.
     """
     states = np.arange(len(mdp.r))
     chosen = mdp.r.argmax(axis=1)
+    tried: set[bytes] = set()
     while True:
+        tried.add(chosen.tobytes())
         policy = np.zeros_like(mdp.r)
         policy[states, chosen] = 1
         v = evaluate(mdp, policy)
         q = mdp.q(v)
         better = ~ties(q)[states, chosen]
-        if not better.any():
-            break
         chosen = np.where(better, q.argmax(axis=1), chosen)
+        # Rounding can call actions better in turn; a policy met again is as good as it gets.
+        if chosen.tobytes() in tried:
+            break
     bound = float(np.abs(q.max(axis=1) - v).max()) / (1 - mdp.gamma)
     return Solution(q, v, uniform_over(ties(q)), bound)
 
@@ -63,7 +66,8 @@ def evaluate(mdp: MDP, policy: Array) -> Array:
 def ties(q: Array) -> NDArray[np.bool_]:
     """The actions whose value is the state's best, up to a relative difference of `TIE`, (S, A)."""
     best = q.max(axis=1, keepdims=True)
-    return q >= best - TIE * np.abs(best)
+    tied: NDArray[np.bool_] = q >= best - TIE * np.abs(best)
+    return tied
 
 
 def distances(maze: Maze) -> Array:
@@ -98,7 +102,7 @@ def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Ar
     Read off the distances, never off Q: far from the goal the Q values of all actions are equal
     to machine precision.
     """
-    d = dijkstra(maze.edges.tocsr(), unweighted=True, indices=goal)
+    d = dijkstra(maze.edges.tocsr(), unweighted=True, indices=[goal])[0]
     after = maze.successors[:, list(actions)]
     nearest = d[after].min(axis=1, keepdims=True)
     return uniform_over(d[after] == nearest)
