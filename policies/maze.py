@@ -92,8 +92,10 @@ def read_maze(path: Path) -> Maze:
     """Read a maze file; MazeError names file, line and column."""
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise MazeError(f"{path}: expected a readable maze text file: {error}") from error
+    except OSError as error:
+        raise MazeError(f"{path}: expected a readable file: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise MazeError(f"{path}: expected text in UTF-8: {error}") from error
     return parse_maze(text, source=str(path))
 
 

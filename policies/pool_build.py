@@ -1,7 +1,7 @@
 """Building the pool: mazes and a seed in, the bytes of its two files out."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.resources import files
 from typing import Any
@@ -28,17 +28,22 @@ from policies.pool_rule import (
     generator,
     practice_fault,
 )
+from policies.solvers import goal_values
 
 SURE = 0.8
 """The belief in the true goal above which the predicted observer counts as sure."""
 
 
-def build(seed: int, mazes: Mapping[str, Maze] | None = None) -> dict[str, str]:
-    """The files of the pool, name to text: the same for the same seed and mazes."""
-    mazes = mazes or package_mazes()
+def build(seed: int, progress: Callable[[str], None] = lambda _: None) -> dict[str, str]:
+    """The files of the pool, name to text: the same bytes for the same seed and mazes."""
+    mazes = package_mazes()
     planner = Planner({name: mazes[name] for name in (*MAZES, PRACTICE_MAZE)}, seed)
     shown = {name: mazes[name] for name in MAZES}
-    chosen = choose([c for name in MAZES for c in passing(planner, name)], shown, seed)
+    fit = []
+    for name in MAZES:
+        progress(f"drawing every start and goal of maze {name}")
+        fit += passing(planner, name)
+    chosen = choose(fit, shown, seed)
     scenes = {name: scene(maze) for name, maze in planner.mazes.items()}
     scenarios = [
         {"id": f"s{i:02}", "maze": c.maze, "start": c.start, "goal": c.goal}
@@ -119,62 +124,51 @@ def scene(maze: Maze) -> dict[str, Any]:
 
 def manifest(pool: Mapping[str, Any], planner: Planner) -> dict[str, Any]:
     """What the pool is, the rule it was drawn by, and how much sooner its legible half tells."""
-    curves = {
-        s["id"]: belief_curve(planner, s["maze"], s["goal"], s["cells"]) for s in pool["stimuli"]
-    }
-    sure = {
-        (s["scenario"], s["condition"]): steps_until_sure(curves[s["id"]][:, None], 0, SURE)
-        for s in pool["stimuli"]
-    }
-    again = {}
+    curves = {s["id"]: _curve(planner, s["maze"], s["goal"], s["cells"]) for s in pool["stimuli"]}
+    sure = {(s["scenario"], s["condition"]): _sure(curves[s["id"]]) for s in pool["stimuli"]}
     for s in pool["scenarios"]:
-        candidate = Candidate(s["maze"], s["start"], s["goal"])
-        cells = planner.draw(candidate, SECOND_OPTIMAL)
-        curve = belief_curve(planner, s["maze"], s["goal"], cells)
-        again[s["id"]] = steps_until_sure(curve[:, None], 0, SURE)
-    names = [s["id"] for s in pool["scenarios"]]
-    optimal = [sure[name, "optimal"] for name in names]
-    legible = [sure[name, "polmdp"] for name in names]
+        cells = planner.draw(Candidate(s["maze"], s["start"], s["goal"]), SECOND_OPTIMAL)
+        sure[s["id"], SECOND_OPTIMAL] = _sure(_curve(planner, s["maze"], s["goal"], cells))
+    compared = (*CONDITIONS, SECOND_OPTIMAL)
+    steps = {c: np.array([sure[s["id"], c] for s in pool["scenarios"]]) for c in compared}
     return {
         "pool_sha256": content_hash(pool),
         "seed": planner.seed,
         "parameters": {**asdict(PARAMETERS), "failure": FAILURE, "beta_observer": OBSERVER_BETA},
         "rule": list(RULE),
         "mazes_sha256": {n: content_hash(format_maze(m)) for n, m in planner.mazes.items()},
-        "prediction": {
-            "observer": (
-                f"Bayesian, sees only the movement, beta {OBSERVER_BETA:g}; sure = belief in the "
-                f"true goal above {SURE:g}, and the whole length where it never is"
-            ),
-            "interval": f"t interval of the mean over the {len(names)} scenarios, 95 %",
-            "saving": "steps until sure, optimal minus polmdp",
-            "baseline": "steps until sure, optimal minus a second draw of the optimal policy",
-            "mean_steps_until_sure": {
-                "polmdp": round(float(np.mean(legible)), 4),
-                "optimal": round(float(np.mean(optimal)), 4),
-            },
-            "saving_steps": mean_with_interval(np.subtract(optimal, legible)),
-            "saving_percent": round(100 * (1 - sum(legible) / sum(optimal)), 2),
-            "baseline_steps": mean_with_interval(np.subtract(optimal, list(again.values()))),
-        },
+        "prediction": prediction(steps),
         "steps_until_sure": [
-            {
-                "scenario": name,
-                **{condition: sure[name, condition] for condition in CONDITIONS},
-                SECOND_OPTIMAL: again[name],
-            }
-            for name in names
+            {"scenario": s["id"], **{c: sure[s["id"], c] for c in compared}}
+            for s in pool["scenarios"]
         ],
         "belief_in_true_goal": {key: curve.round(6).tolist() for key, curve in curves.items()},
     }
 
 
-def belief_curve(planner: Planner, maze: str, goal: str, cells: Sequence[int]) -> Array:
-    """The observer's belief in the true goal at steps 0 to T, shape (T + 1,)."""
-    plan = planner.plan(maze, goal)
+def prediction(steps: Mapping[str, Array]) -> dict[str, Any]:
+    """Mean predicted saving and its baseline from steps until sure, per scenario, (37,) each."""
+    optimal, legible = steps["optimal"], steps["polmdp"]
+    return {
+        "observer": (
+            f"Bayesian, sees only the movement, beta {OBSERVER_BETA:g}; sure = belief in the "
+            f"true goal above {SURE:g}, and the whole length where it never is"
+        ),
+        "interval": f"t interval of the mean over the {len(optimal)} scenarios, 95 %",
+        "saving": "steps until sure, optimal minus polmdp",
+        "baseline": "steps until sure, optimal minus a second draw of the optimal policy",
+        "mean_steps_until_sure": {c: round(float(s.mean()), 4) for c, s in steps.items()},
+        "saving_steps": mean_with_interval(optimal - legible),
+        "saving_percent": round(100 * float(1 - legible.sum() / optimal.sum()), 2),
+        "baseline_steps": mean_with_interval(optimal - steps[SECOND_OPTIMAL]),
+    }
+
+
+def beliefs(maze: Maze, cells: Sequence[int]) -> Array:
+    """The predicted observer's beliefs at steps 0 to T in every goal, shape (T + 1, N)."""
     actions = ACTION_SETS[PARAMETERS.actions]
-    beliefs = movement_beliefs(plan.maze, plan.q, np.array(cells), actions)
-    return beliefs[:, plan.maze.goal_index(goal)]
+    q = goal_values(maze, PARAMETERS.gamma, actions)
+    return movement_beliefs(maze, q, np.array(cells), actions)
 
 
 def mean_with_interval(values: Array) -> dict[str, float]:
@@ -197,6 +191,15 @@ def as_lines(content: Mapping[str, Any]) -> str:
         else:
             parts.append(f"{json.dumps(key)}: {json.dumps(value)}")
     return "{\n  " + ",\n  ".join(parts) + "\n}\n"
+
+
+def _curve(planner: Planner, maze: str, goal: str, cells: Sequence[int]) -> Array:
+    shown = planner.mazes[maze]
+    return beliefs(shown, cells)[:, shown.goal_index(goal)]
+
+
+def _sure(curve: Array) -> int:
+    return steps_until_sure(curve[:, None], 0, SURE)
 
 
 def _runs(line: Iterable[bool]) -> list[tuple[int, int]]:
