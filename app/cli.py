@@ -1,0 +1,92 @@
+"""The command `goalguess`: the study's own commands beside those of policies and analysis."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from analysis import commands as analysis_commands
+from policies import commands as policies_commands
+
+commands = typer.Typer(
+    name="goalguess",
+    help="Show people how an agent acts, and measure how soon they know what it wants.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+commands.add_typer(policies_commands)
+commands.add_typer(analysis_commands)
+
+
+@commands.command()
+def serve(
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 takes a free one.")] = 8000,
+) -> None:
+    """Serve the study to participants; answers go to the file GOALGUESS_DATABASE_URL names.
+
+    Example: GOALGUESS_DATABASE_URL=sqlite:///study.sqlite goalguess serve --port 8000
+    """
+    import uvicorn
+
+    from app.main import create_app
+    from app.settings import Settings
+
+    settings = Settings()
+    app = create_app(settings)
+    server = uvicorn.Server(uvicorn.Config(app, host=host, port=port, log_level="warning"))
+    typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
+    typer.echo(f"The study is at http://{host}:{port}/")
+    server.run()
+
+
+@commands.command()
+def export(
+    to: Annotated[Path, typer.Option(help="Folder to write to; made if need be.")],
+    simulated: Annotated[
+        bool, typer.Option("--simulated", help="Also simulated and preview participants.")
+    ] = False,
+) -> None:
+    """Write trials, participants, events (CSV, JSON lines, Parquet) and the code book.
+
+    Example: goalguess export --to results
+    """
+    from app.errors import DatabaseMismatch
+    from app.export import export as write_export
+    from app.main import open_database
+    from app.settings import Settings
+    from app.study import load_study
+
+    settings = Settings()
+    if not settings.database_file.exists():
+        raise DatabaseMismatch(
+            f"{settings.database_file}: expected a database with answers, found no such file; "
+            "GOALGUESS_DATABASE_URL names it"
+        )
+    study = load_study(settings)
+    database = open_database(settings, study)
+    try:
+        counts = write_export(database, study, to, simulated)
+    finally:
+        database.close()
+    rows = ", ".join(f"{count} {name}" for name, count in counts.items())
+    typer.echo(f"{to}: {rows}, and what each column means in codebook.md")
+
+
+def main() -> None:
+    """Run the command; whatever the user can mend is one line, never a traceback."""
+    from analysis import AnalysisError
+    from app.errors import AppError
+    from policies import PolicyError
+
+    try:
+        commands()
+    except (AppError, AnalysisError, PolicyError, OSError) as error:
+        typer.echo(f"goalguess: {error}", err=True)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,136 @@
+"""The database: `read(fn)` and `write(fn)`, one writer, group commit.
+
+All writes queue to one thread that runs the waiting functions in one transaction, each behind a
+savepoint of its own, commits once, and only then answers them all: acknowledged means on disk,
+two writes never race, and a slow disk costs latency, not throughput.
+"""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import Future
+from queue import Empty, SimpleQueue
+from threading import Lock, Thread
+from typing import Any, NamedTuple, TypeVar
+
+from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.pool import NullPool
+
+T = TypeVar("T")
+Work = Callable[[Connection], T]
+
+LARGEST_GROUP = 200
+BUSY_MS = 10_000
+"""How long to wait for another process that is writing."""
+
+
+class _Waiting(NamedTuple):
+    work: Work[Any]
+    done: Future[Any]
+
+
+class Database:
+    """A SQLite file in use; `close()` ends the writer after what is queued."""
+
+    def __init__(self, url: str) -> None:
+        self._write_engine = sqlite_engine(url, begin="BEGIN IMMEDIATE")
+        use_write_ahead_log(self._write_engine)
+        self._read_engine = sqlite_engine(url, begin="BEGIN")
+        self._reader = self._read_engine.connect()
+        self._reading = Lock()
+        self._queue: SimpleQueue[_Waiting | None] = SimpleQueue()
+        self._writer = Thread(target=self._run_writer, name="database-writer", daemon=True)
+        self._writer.start()
+
+    def read_now(self, work: Work[T]) -> T:
+        """Run a function that only reads, on a snapshot, and return what it returns."""
+        with self._reading, self._reader.begin():
+            return work(self._reader)
+
+    def submit(self, work: Work[T]) -> "Future[T]":
+        """Queue a function that writes; the future is done when its transaction is on disk."""
+        done: Future[T] = Future()
+        self._queue.put(_Waiting(work, done))
+        return done
+
+    async def read(self, work: Work[T]) -> T:
+        """Read in place: a look-up takes less time than handing it to a thread."""
+        return self.read_now(work)
+
+    async def write(self, work: Work[T]) -> T:
+        """Return what the function returned, once its transaction is on disk."""
+        return await asyncio.wrap_future(self.submit(work))
+
+    def close(self) -> None:
+        """Finish the queued writes and let go of the file."""
+        self._queue.put(None)
+        self._writer.join()
+        self._reader.close()
+        self._read_engine.dispose()
+        self._write_engine.dispose()
+
+    def _run_writer(self) -> None:
+        with self._write_engine.connect() as connection:
+            open_for_work = True
+            while open_for_work:
+                group = self._next_group()
+                open_for_work = group[-1] is not None
+                _commit_together(connection, [waiting for waiting in group if waiting])
+
+    def _next_group(self) -> list[_Waiting | None]:
+        """Wait for a write, then take whatever else is waiting; ends with None on close."""
+        group = [self._queue.get()]
+        while group[-1] is not None and len(group) < LARGEST_GROUP:
+            try:
+                group.append(self._queue.get_nowait())
+            except Empty:
+                break
+        return group
+
+
+def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
+    """Run a group in one transaction; a failing function is undone alone."""
+    if not group:
+        return
+    outcomes: list[tuple[Future[Any], Any, BaseException | None]] = []
+    try:
+        with connection.begin():
+            for work, done in group:
+                try:
+                    with connection.begin_nested():
+                        outcomes.append((done, work(connection), None))
+                except Exception as error:
+                    outcomes.append((done, None, error))
+    except BaseException as error:
+        outcomes = [(waiting.done, None, error) for waiting in group]
+    for done, result, error in outcomes:
+        if error is None:
+            done.set_result(result)
+        else:
+            done.set_exception(error)
+
+
+def sqlite_engine(url: str, begin: str) -> Engine:
+    """An engine whose transactions start with `begin`, durable and with foreign keys enforced."""
+    engine = create_engine(url, poolclass=NullPool)
+
+    @event.listens_for(engine, "connect")
+    def configure(connection: Any, _record: Any) -> None:
+        # The driver must not begin transactions of its own: they are begun below, explicitly.
+        connection.isolation_level = None
+        for pragma in ("synchronous=FULL", "foreign_keys=ON", f"busy_timeout={BUSY_MS}"):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def begin_explicitly(connection: Connection) -> None:
+        connection.exec_driver_sql(begin)
+
+    return engine
+
+
+def use_write_ahead_log(engine: Engine) -> None:
+    """Let readers go on while the writer writes; the file remembers it."""
+    connection = engine.raw_connection()
+    try:
+        connection.cursor().execute("PRAGMA journal_mode=WAL")
+    finally:
+        connection.close()

@@ -1,0 +1,118 @@
+"""What routes share: the services of an app, the session's cookie, replies."""
+
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse, RedirectResponse
+from starlette.responses import Response
+
+from app import enrolment
+from app.database import Database
+from app.errors import WrongStep
+from app.pages import Pages
+from app.repository import Record
+from app.settings import Settings
+from app.steps import ENDINGS, Step
+from app.study import Study
+
+COOKIE = "goalguess_session"
+COOKIE_SECONDS = 90 * 24 * 3600
+
+PATHS = {
+    Step.ABOUT_YOU: "/about-you",
+    Step.INSTRUCTIONS: "/instructions",
+    Step.PRACTICE: "/practice",
+    Step.TRIALS: "/trial",
+    **dict.fromkeys(ENDINGS, "/end"),
+}
+"""Where each step's page is."""
+
+
+class AtAnotherStep(WrongStep):
+    """A page was asked for that is not the participant's; they are sent to theirs."""
+
+    def __init__(self, step: Step) -> None:
+        super().__init__(f"The page of step {step} comes next.")
+        self.path = PATHS[step]
+
+
+@dataclass(frozen=True)
+class Services:
+    """What an app is made of, `app.state.services`."""
+
+    settings: Settings
+    study: Study
+    database: Database
+    pages: Pages
+
+
+def services(request: Request) -> Services:
+    """The services of the app that handles a request."""
+    found: Services = request.app.state.services
+    return found
+
+
+def token_of(request: Request) -> str | None:
+    """The session's token in the browser's cookie."""
+    return request.cookies.get(COOKIE)
+
+
+async def participant_at(request: Request, *steps: Step) -> Record:
+    """The participant, who must be at one of the steps; AtAnotherStep leads to theirs."""
+    token = token_of(request)
+    participant = await services(request).database.read(
+        lambda connection: enrolment.participant_of(connection, token)
+    )
+    if participant.step not in steps:
+        raise AtAnotherStep(Step(participant.step))
+    return participant
+
+
+def page(
+    request: Request,
+    template: str,
+    context: dict[str, Any] | None = None,
+    participant: Record | None = None,
+    status: int = 200,
+) -> HTMLResponse:
+    """A page of the participant's, with the way to withdraw while the study is open."""
+    at = services(request)
+    return at.pages.render(
+        template,
+        context or {},
+        participant=participant.pseudonym if participant else None,
+        can_withdraw=participant is not None and at.settings.study_open,
+        status=status,
+    )
+
+
+def recruiter(request: Request, ending: str) -> dict[str, str | None]:
+    """The way back to the recruiter from an ending, where it has a code."""
+    settings = services(request).settings
+    code = settings.codes.get(ending)
+    return {"code": code, "url": settings.return_url.format(code=code) if code else None}
+
+
+def see(path: str, token: str | None = None, secure: bool = False) -> RedirectResponse:
+    """Send the browser to a page with GET; with a token, begin a session there."""
+    response = RedirectResponse(path, 303, headers={"Cache-Control": "no-store"})
+    if token:
+        response.set_cookie(
+            COOKIE,
+            token,
+            max_age=COOKIE_SECONDS,
+            httponly=True,
+            samesite="lax",
+            secure=secure,
+        )
+    return response
+
+
+def as_json(content: Any, status: int = 200) -> Response:
+    """A JSON reply that no cache keeps."""
+    body = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    return Response(
+        body, status, headers={"Cache-Control": "no-store"}, media_type="application/json"
+    )

@@ -1,0 +1,86 @@
+"""Errors of the study.
+
+AppError (carries an HTTP status and a code; one handler renders it as page or JSON)
+├── NoSession          401  the browser has no session, or one that has ended
+├── Moved              409  the session went on in another browser
+├── WrongStep          409  what was sent belongs to a step the participant is not at
+├── PlaceReturned      409  the place went to somebody else before its first frame was played
+├── InvalidInput       422  what was sent cannot be: which field, expected, came
+├── TooLarge           413  the request is larger than any page of ours sends
+├── ForeignOrigin      403  a POST that did not come from our own pages
+├── DatabaseMismatch   500  a database that this version must not open
+└── DealingFailed      500  no balanced list could be drawn from the pool
+"""
+
+
+class AppError(Exception):
+    """Anything the study refuses; the message is one sentence for whoever reads it."""
+
+    status = 500
+    code = "error"
+
+
+class NoSession(AppError):
+    """The browser has no session, or one that has ended."""
+
+    status = 401
+    code = "no_session"
+
+    def __init__(self) -> None:
+        super().__init__("Please open the study through your invitation link.")
+
+
+class Moved(AppError):
+    """The session went on in another browser."""
+
+    status = 409
+    code = "moved"
+
+    def __init__(self) -> None:
+        super().__init__("You went on with the study in another browser.")
+
+
+class WrongStep(AppError):
+    """What was sent belongs to a step the participant is not at."""
+
+    status = 409
+    code = "wrong_step"
+
+
+class PlaceReturned(AppError):
+    """The place went to somebody else before its first frame was played."""
+
+    status = 409
+    code = "place_returned"
+
+    def __init__(self) -> None:
+        super().__init__("The first animation was not started in time; a new set is ready.")
+
+
+class InvalidInput(AppError):
+    """What was sent cannot be; the message names the field, what was expected and what came."""
+
+    status = 422
+    code = "invalid"
+
+
+class TooLarge(AppError):
+    """The request is larger than any page of ours sends."""
+
+    status = 413
+    code = "too_large"
+
+
+class ForeignOrigin(AppError):
+    """A POST that did not come from our own pages."""
+
+    status = 403
+    code = "foreign_origin"
+
+
+class DatabaseMismatch(AppError):
+    """A database that this version must not open."""
+
+
+class DealingFailed(AppError):
+    """No balanced list could be drawn from the pool."""

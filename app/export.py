@@ -1,0 +1,144 @@
+"""The export: raw rows and what is derived of them, as the tables of analysis.contract."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection
+
+from analysis import EVENTS, PARTICIPANTS, TRIALS, code_book, prediction_time_s, write_table
+from app import repository
+from app.answering import score_trial
+from app.database import Database
+from app.repository import Record
+from app.study import Study
+
+Row = dict[str, Any]
+
+
+def export(database: Database, study: Study, folder: Path, simulated: bool) -> dict[str, int]:
+    """Write the three tables and the code book; returns the number of rows of each table.
+
+    Rows of simulated and preview participants are written only if asked for. All tables show
+    the database at one moment, also while the study runs.
+    """
+
+    def gather(connection: Connection) -> dict[str, list[Row]]:
+        trials = [_trial(study, record) for record in repository.all_trials(connection)]
+        return {
+            TRIALS.name: trials,
+            PARTICIPANTS.name: list(_participants(connection, trials)),
+            EVENTS.name: [_event(record) for record in repository.all_events(connection)],
+        }
+
+    rows = database.read_now(gather)
+    if not simulated:
+        pilots = {
+            row["participant"]
+            for row in rows[PARTICIPANTS.name]
+            if row["simulated"] or row["preview"]
+        }
+        rows = {
+            name: [row for row in table if row["participant"] not in pilots]
+            for name, table in rows.items()
+        }
+    folder.mkdir(parents=True, exist_ok=True)
+    for table in (TRIALS, PARTICIPANTS, EVENTS):
+        write_table(table, rows[table.name], folder)
+    (folder / "codebook.md").write_text(code_book(), encoding="utf-8")
+    return {name: len(table) for name, table in rows.items()}
+
+
+def _trial(study: Study, record: Record) -> Row:
+    derived = score_trial(study, record)
+    return {
+        "participant": record.pseudonym,
+        "condition": record.condition,
+        "scenario": derived.stimulus.scenario,
+        "stimulus": record.stimulus,
+        "maze": derived.stimulus.maze,
+        "trial_index": record.trial_index,
+        "goal": derived.stimulus.goal,
+        "guess": record.guess,
+        "correct": derived.correct,
+        "stop_time_s": derived.stop_time_s,
+        "length_s": derived.length_s,
+        "prediction_time_s": prediction_time_s(
+            derived.stop_time_s, derived.length_s, derived.correct
+        ),
+        "score": derived.score,
+        "confidence": record.confidence,
+        "reached_end": record.reached_end,
+        "steps_seen": derived.steps_seen,
+        "started_at": record.played_at,
+        "stopped_at": record.stopped_at,
+        "answered_at": record.answered_at,
+        "guess_latency_s": record.guess_latency_ms / 1000,
+        "confidence_latency_s": record.confidence_latency_ms / 1000,
+        "lead_in_s": record.lead_in_ms / 1000,
+        "pauses": record.pauses,
+        "paused_s": record.paused_ms / 1000,
+        "focus_losses": record.focus_losses,
+        "reduced_motion": record.reduced_motion,
+        "frames_dropped": record.frames_dropped,
+        **_marks(record),
+    }
+
+
+def _participants(connection: Connection, trials: list[Row]) -> Iterator[Row]:
+    scores: dict[str, list[float]] = {}
+    for trial in trials:
+        scores.setdefault(trial["participant"], []).append(trial["score"])
+    for record in repository.all_participants(connection):
+        theirs = scores.get(record.pseudonym, [])
+        yield {
+            "participant": record.pseudonym,
+            "condition": record.condition,
+            "status": record.step,
+            "age": record.age,
+            "gender": record.gender,
+            "nationality": record.nationality,
+            "education": record.education,
+            "occupation": record.occupation,
+            "robot_familiarity": record.robot_familiarity,
+            "consented_at": record.consented_at,
+            "dealt_at": record.dealt_at,
+            "first_played_at": record.played_at,
+            "finished_at": record.finished_at,
+            "control_tries": record.control_tries,
+            "trials_answered": len(theirs),
+            "score": sum(theirs) if theirs else None,
+            "user_agent": record.user_agent,
+            "viewport_width": record.viewport_width,
+            "viewport_height": record.viewport_height,
+            "pixel_ratio": record.pixel_ratio,
+            "refresh_rate_hz": record.refresh_rate_hz,
+            "pointer_type": record.pointer_type,
+            "consent_hash": record.consent_hash,
+            **_marks(record),
+        }
+
+
+def _event(record: Record) -> Row:
+    return {
+        "participant": record.pseudonym,
+        "event_id": record.id,
+        "trial_index": record.trial_index,
+        "type": record.type,
+        "server_time": record.server_time,
+        "client_time_ms": record.client_time_ms,
+        "details": json.dumps(record.details, sort_keys=True),
+        "stimulus": record.stimulus,
+        "study_hash": record.study_hash,
+        "app_version": record.app_version,
+    }
+
+
+def _marks(record: Record) -> Row:
+    return {
+        "simulated": record.stream == "simulated",
+        "preview": record.stream == "preview",
+        "study_hash": record.study_hash,
+        "app_version": record.app_version,
+    }

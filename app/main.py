@@ -1,0 +1,97 @@
+"""The application: `create_app(settings)` puts the parts together."""
+
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI, Request
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from app import VERSION, enrolment, participant, trials_api
+from app.database import Database
+from app.deps import AtAnotherStep, Services, as_json, page, see
+from app.errors import AppError, Moved
+from app.pages import Pages, static_app
+from app.schema import prepare
+from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
+from app.settings import Settings
+from app.study import Study, load_study
+
+log = logging.getLogger("goalguess")
+
+
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """The study as an ASGI application; its database is opened when it starts."""
+    settings = settings or Settings()
+    study = load_study(settings)
+    pages = Pages(study)
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        database = open_database(settings, study)
+        app.state.services = Services(settings, study, database, pages)
+        yield
+        database.close()
+
+    app = FastAPI(
+        title="Goalguess",
+        version=VERSION,
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=None,
+    )
+    app.include_router(participant.router)
+    app.router.routes.extend(trials_api.routes)
+    app.mount(pages.static_root, static_app(), name="static")
+    app.add_middleware(OwnPagesOnly, refuse=render_error)
+    app.add_middleware(SecurityHeaders)
+    app.add_exception_handler(AppError, render_error)
+    app.add_exception_handler(HTTPException, _render_http_error)
+    app.add_exception_handler(Exception, _render_crash)
+    return app
+
+
+def open_database(settings: Settings, study: Study) -> Database:
+    """The database of the settings, up to date; DatabaseMismatch if it is not ours."""
+    file = settings.database_file
+    prepare(settings.database_url, str(file))
+    database = Database(settings.database_url)
+    try:
+        database.submit(lambda c: enrolment.open_books(c, study)).result()
+        journal = settings.withdrawals_file
+        database.submit(lambda c: enrolment.withdraw_again(c, journal)).result()
+    except BaseException:
+        database.close()
+        raise
+    return database
+
+
+def render_error(request: Request, error: Exception) -> Response:
+    """The one place where errors become replies: a page, or JSON for the trial page."""
+    if not isinstance(error, AppError):
+        raise error
+    if request.url.path.startswith("/api/"):
+        content = {"error": {"code": error.code, "message": str(error)}}
+        return as_json(content, error.status)
+    if isinstance(error, AtAnotherStep):
+        return see(error.path)
+    if isinstance(error, Moved):
+        return page(request, "moved.html", status=error.status)
+    context = {"status": error.status, "message": str(error)}
+    return page(request, "error.html", context, status=error.status)
+
+
+def _render_http_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    refusal = AppError("There is no such page." if error.status_code == 404 else error.detail)
+    refusal.status = error.status_code
+    return render_error(request, refusal)
+
+
+def _render_crash(request: Request, error: Exception) -> Response:
+    log.exception("%s %s failed", request.method, request.url.path, exc_info=error)
+    reply = render_error(request, AppError("Something went wrong on our side. Please try again."))
+    reply.headers.update(HEADERS)
+    return reply

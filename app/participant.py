@@ -1,0 +1,215 @@
+"""The participant's pages: parse, call, reply."""
+
+import secrets
+
+from fastapi import APIRouter, Request
+from fastapi.responses import Response
+
+from app import answering, enrolment
+from app.answering import TrialScore
+from app.deps import (
+    PATHS,
+    page,
+    participant_at,
+    recruiter,
+    see,
+    services,
+    token_of,
+)
+from app.enrolment import Link
+from app.errors import InvalidInput, WrongStep
+from app.questions import ABOUT_YOU, CONTROL, answers
+from app.steps import CONTROL_TRIES, ENDINGS, Step
+from app.study import Study
+
+router = APIRouter(include_in_schema=False)
+
+BEST_SCORE_OF_TRIAL = 10
+
+
+@router.get("/")
+async def arrive(request: Request) -> Response:
+    """The invitation link: whoever is known goes on where they were."""
+    link = Link.read(request.query_params)
+    at = services(request)
+    token = token_of(request)
+    known = await at.database.read(lambda c: enrolment.find(c, link, token))
+    if known is None:
+        fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
+        return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
+    if known.moves:
+        token = await at.database.write(lambda c: enrolment.come_back(c, link))
+        return see(PATHS[known.step], token, secure=request.url.scheme == "https")
+    return see(PATHS[known.step])
+
+
+@router.post("/consent")
+async def consent(request: Request) -> Response:
+    """Yes makes the participant; no is only counted."""
+    form = await _form(request)
+    at = services(request)
+    if form.get("decision") != "yes":
+        await at.database.write(enrolment.decline)
+        return see("/no-consent")
+    arrival = form.get("arrival", "")
+    if not 16 <= len(arrival) <= 64:
+        raise InvalidInput("arrival: expected the hidden field of the consent page.")
+    link = Link.read(form)
+    agent = request.headers.get("user-agent", "")[:400]
+    token = await at.database.write(lambda c: enrolment.consent(c, at.study, arrival, link, agent))
+    return see("/about-you", token, secure=request.url.scheme == "https")
+
+
+@router.get("/no-consent")
+async def no_consent(request: Request) -> Response:
+    """For whoever did not agree."""
+    return page(request, "no_consent.html", {"recruiter": recruiter(request, "no_consent")})
+
+
+@router.get("/about-you")
+async def about_you(request: Request) -> Response:
+    """The questions about the participant."""
+    participant = await participant_at(request, Step.ABOUT_YOU)
+    context = {"questions": ABOUT_YOU, "answers": {}, "errors": {}}
+    return page(request, "about_you.html", context, participant)
+
+
+@router.post("/about-you")
+async def describe(request: Request) -> Response:
+    """Answers to them; what is wrong is shown again beside what was right."""
+    participant = await participant_at(request, Step.ABOUT_YOU)
+    form = await _form(request)
+    given, errors = answers(ABOUT_YOU, form)
+    if errors:
+        context = {"questions": ABOUT_YOU, "answers": form, "errors": errors}
+        return page(request, "about_you.html", context, participant, status=422)
+    token = token_of(request)
+    await services(request).database.write(lambda c: enrolment.describe(c, token, given))
+    return see("/instructions")
+
+
+@router.get("/instructions")
+async def instructions(request: Request) -> Response:
+    """How the game goes."""
+    participant = await participant_at(request, Step.INSTRUCTIONS)
+    return page(request, "instructions.html", participant=participant)
+
+
+@router.post("/instructions")
+async def finish_instructions(request: Request) -> Response:
+    """Read and understood."""
+    token = token_of(request)
+    await services(request).database.write(lambda c: enrolment.finish_instructions(c, token))
+    return see("/practice")
+
+
+@router.get("/practice")
+async def practice(request: Request) -> Response:
+    """One animation to try, then the control question."""
+    participant = await participant_at(request, Step.PRACTICE)
+    context = {
+        "question": CONTROL,
+        "tries_left": CONTROL_TRIES - participant.control_tries,
+        "wrong": participant.control_tries > 0,
+    }
+    return page(request, "practice.html", context, participant)
+
+
+@router.post("/practice")
+async def answer_control(request: Request) -> Response:
+    """The answer to the control question."""
+    form = await _form(request)
+    at, token = services(request), token_of(request)
+    try:
+        answer = CONTROL.answer(form)
+    except ValueError:
+        return see("/practice")
+    step = await at.database.write(lambda c: enrolment.answer_control(c, at.study, token, answer))
+    return see(PATHS[step])
+
+
+@router.get("/trial")
+async def trial(request: Request) -> Response:
+    """The page that runs all trials; whoever lost their place is dealt a new one."""
+    participant = await participant_at(request, Step.TRIALS)
+    at = services(request)
+    if not await at.database.read(lambda c: enrolment.has_place(c, participant)):
+        await at.database.write(lambda c: enrolment.deal(c, at.study, participant))
+    return page(request, "trial.html", participant=participant)
+
+
+@router.get("/end")
+async def end(request: Request) -> Response:
+    """The page of how it ended."""
+    participant = await participant_at(request, *ENDINGS)
+    context: dict[str, object] = {"recruiter": recruiter(request, participant.step)}
+    if participant.step == Step.COMPLETED:
+        study = services(request).study
+        scores = await services(request).database.read(
+            lambda c: answering.scores(c, study, participant)
+        )
+        context |= {
+            "score": sum(one.score for one in scores),
+            "best": BEST_SCORE_OF_TRIAL * study.trials,
+            "trials": [_shown(study, one) for one in scores],
+        }
+    return page(request, f"{participant.step}.html", context, participant)
+
+
+@router.post("/failed")
+async def fail(request: Request) -> Response:
+    """The study does not work for this participant."""
+    token = token_of(request)
+    await services(request).database.write(lambda c: enrolment.fail(c, token))
+    return see("/end")
+
+
+@router.get("/withdraw")
+async def confirm_withdrawal(request: Request) -> Response:
+    """What withdrawing means, before it is done."""
+    participant = await participant_at(request, *Step)
+    return page(request, "withdraw.html", participant=participant)
+
+
+@router.post("/withdraw")
+async def withdraw(request: Request) -> Response:
+    """Delete everything about the participant and forget the browser."""
+    at, token = services(request), token_of(request)
+    if not at.settings.study_open:
+        raise WrongStep("The study is closed; please write to the researchers to withdraw.")
+    journal = at.settings.withdrawals_file
+    await at.database.write(lambda c: enrolment.withdraw(c, token, journal))
+    response = see("/withdrawn")
+    response.headers["Clear-Site-Data"] = '"cookies", "storage"'
+    return response
+
+
+@router.get("/withdrawn")
+async def withdrawn(request: Request) -> Response:
+    """The last word to whoever withdrew."""
+    return page(request, "withdrawn.html", {"recruiter": recruiter(request, "withdrawn")})
+
+
+async def _form(request: Request) -> dict[str, str]:
+    async with request.form(max_files=0, max_fields=50) as form:
+        return {name: value for name, value in form.items() if isinstance(value, str)}
+
+
+def _shown(study: Study, one: TrialScore) -> dict[str, object]:
+    """A finished trial with its small picture: what was seen of the path, and the rest."""
+    playback = study.playback(one.stimulus)
+    path = playback.pop("path")
+    return {
+        "index": one.index,
+        "correct": one.correct,
+        "guess": one.guess,
+        "goal": one.stimulus.goal,
+        "stop_time_s": one.stop_time_s,
+        "length_s": one.length_s,
+        "score": one.score,
+        "picture": {
+            **playback,
+            "seen": path[: one.steps_seen + 1],
+            "rest": path[one.steps_seen + 1 :],
+        },
+    }

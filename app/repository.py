@@ -1,0 +1,341 @@
+"""Every query. Functions take an open connection and plain values, and apply no rules."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, Row, delete, func, select, update
+from sqlalchemy.dialects.sqlite import insert
+
+from app.tables import (
+    demographics,
+    events,
+    participants,
+    places,
+    randomisation,
+    recruits,
+    sessions,
+    studies,
+    tallies,
+    trials,
+)
+
+Record = Row[Any]
+
+
+def now() -> datetime:
+    """The server's clock, UTC."""
+    return datetime.now(UTC)
+
+
+# --- the study ---------------------------------------------------------------------------------
+
+
+def register_study(
+    connection: Connection, study_hash: str, definition: Mapping[str, Any], pool_hash: str
+) -> None:
+    """Keep a definition of the study for those who read its hash later."""
+    connection.execute(
+        insert(studies)
+        .values(hash=study_hash, definition=definition, pool_hash=pool_hash, first_used_at=now())
+        .on_conflict_do_nothing()
+    )
+
+
+def pool_in_use(connection: Connection) -> str | None:
+    """Hash of the pool that the places of this database were dealt from."""
+    return connection.scalar(select(studies.c.pool_hash).limit(1))
+
+
+def draw_from(connection: Connection, seed: int, block_size: int) -> None:
+    """Store what the dealing is drawn from, unless this database has it already."""
+    connection.execute(
+        insert(randomisation)
+        .values(id=1, seed=seed, block_size=block_size)
+        .on_conflict_do_nothing()
+    )
+
+
+def drawn_from(connection: Connection) -> Record:
+    """Seed and block size of the dealing."""
+    return connection.execute(select(randomisation)).one()
+
+
+def tally(connection: Connection, name: str) -> None:
+    """Count one more of something, without saying of whom."""
+    statement = insert(tallies).values(name=name, count=1)
+    connection.execute(
+        statement.on_conflict_do_update(
+            index_elements=["name"], set_={"count": tallies.c.count + 1}
+        )
+    )
+
+
+# --- participants and their sessions -----------------------------------------------------------
+
+
+def participant_in_session(connection: Connection, token_hash: str) -> Record | None:
+    """The participant of a session, with `current`: whether it is still the newest one."""
+    return connection.execute(
+        select(participants, sessions.c.current)
+        .join(sessions, sessions.c.participant_id == participants.c.id)
+        .where(sessions.c.token_hash == token_hash)
+    ).one_or_none()
+
+
+def participant_recruited(connection: Connection, recruiter_id: str) -> Record | None:
+    """The participant with a recruiter's id."""
+    return connection.execute(
+        select(participants)
+        .join(recruits, recruits.c.participant_id == participants.c.id)
+        .where(recruits.c.recruiter_id == recruiter_id)
+    ).one_or_none()
+
+
+def participant_arrived(connection: Connection, arrival: str) -> Record | None:
+    """The participant made from one showing of the consent form."""
+    return connection.execute(
+        select(participants).where(participants.c.arrival == arrival)
+    ).one_or_none()
+
+
+def participant_named(connection: Connection, pseudonym: str) -> Record | None:
+    """The participant with a pseudonym."""
+    return connection.execute(
+        select(participants).where(participants.c.pseudonym == pseudonym)
+    ).one_or_none()
+
+
+def add_participant(connection: Connection, **values: Any) -> Record:
+    """A new participant, as stored."""
+    return connection.execute(insert(participants).values(**values).returning(participants)).one()
+
+
+def add_recruit(
+    connection: Connection,
+    participant_id: int,
+    recruiter_id: str,
+    study: str | None,
+    session: str | None,
+) -> None:
+    """Keep the recruiter's ids of a participant."""
+    connection.execute(
+        insert(recruits).values(
+            participant_id=participant_id,
+            recruiter_id=recruiter_id,
+            recruiter_study=study,
+            recruiter_session=session,
+        )
+    )
+
+
+def begin_session(connection: Connection, participant_id: int, token_hash: str) -> None:
+    """Make this the participant's current session; older ones stay, to be told so."""
+    connection.execute(
+        update(sessions).where(sessions.c.participant_id == participant_id).values(current=False)
+    )
+    connection.execute(
+        insert(sessions).values(
+            token_hash=token_hash, participant_id=participant_id, current=True, began_at=now()
+        )
+    )
+
+
+def change_participant(connection: Connection, participant_id: int, **values: Any) -> None:
+    """Set columns of a participant."""
+    connection.execute(
+        update(participants).where(participants.c.id == participant_id).values(**values)
+    )
+
+
+def add_demographics(
+    connection: Connection, participant_id: int, answers: Mapping[str, str | int | None]
+) -> None:
+    """Keep what participants said about themselves."""
+    connection.execute(insert(demographics).values(participant_id=participant_id, **answers))
+
+
+def erase(connection: Connection, participant_id: int) -> None:
+    """Delete all that is known of a participant but the emptied row and the place dealt."""
+    for table in (trials, events, demographics, recruits, sessions):
+        connection.execute(delete(table).where(table.c.participant_id == participant_id))
+    kept = {"id", "pseudonym", "stream", "step", "study_hash", "app_version", "control_tries"}
+    emptied = {column.name: None for column in participants.c if column.name not in kept}
+    change_participant(connection, participant_id, **emptied, control_tries=0)
+
+
+# --- places ------------------------------------------------------------------------------------
+
+
+def place_of(connection: Connection, participant_id: int) -> Record | None:
+    """The place a participant has."""
+    return connection.execute(
+        select(places).where(places.c.participant_id == participant_id)
+    ).one_or_none()
+
+
+def free_place(connection: Connection, stream: str) -> Record | None:
+    """The free place with the lowest number: those given back come before those never dealt."""
+    return connection.execute(
+        select(places)
+        .where(places.c.stream == stream, places.c.dealt_at.is_(None))
+        .order_by(places.c.number)
+        .limit(1)
+    ).one_or_none()
+
+
+def count_places(connection: Connection, stream: str) -> int:
+    """How many places a stream has so far, dealt or not."""
+    return (
+        connection.scalar(select(func.count()).select_from(places).where(places.c.stream == stream))
+        or 0
+    )
+
+
+def add_places(connection: Connection, rows: Iterable[Mapping[str, Any]]) -> None:
+    """Add free places."""
+    connection.execute(insert(places), list(rows))
+
+
+def give_place(connection: Connection, place: Record, participant_id: int) -> None:
+    """Deal a free place to a participant."""
+    connection.execute(
+        update(places)
+        .where(places.c.stream == place.stream, places.c.number == place.number)
+        .values(participant_id=participant_id, dealt_at=now())
+    )
+
+
+def free_unplayed_places(
+    connection: Connection, stream: str, dealt_before: datetime
+) -> Sequence[int]:
+    """Take back the places dealt before a time and never played; returns who had them."""
+    late = (
+        places.c.stream == stream,
+        places.c.played_at.is_(None),
+        places.c.dealt_at < dealt_before,
+    )
+    had = connection.scalars(select(places.c.participant_id).where(*late)).all()
+    connection.execute(update(places).where(*late).values(participant_id=None, dealt_at=None))
+    return had
+
+
+def free_unplayed_place_of(connection: Connection, participant_id: int) -> None:
+    """Take back a participant's place if it was never played."""
+    connection.execute(
+        update(places)
+        .where(places.c.participant_id == participant_id, places.c.played_at.is_(None))
+        .values(participant_id=None, dealt_at=None)
+    )
+
+
+def mark_place_played(connection: Connection, participant_id: int) -> None:
+    """Note the first frame played on a participant's place: from here on it is theirs."""
+    connection.execute(
+        update(places)
+        .where(places.c.participant_id == participant_id, places.c.played_at.is_(None))
+        .values(played_at=now())
+    )
+
+
+# --- trials ------------------------------------------------------------------------------------
+
+
+def last_trial(connection: Connection, participant_id: int) -> Record | None:
+    """The trial that a participant played last."""
+    return connection.execute(
+        select(trials)
+        .where(trials.c.participant_id == participant_id)
+        .order_by(trials.c.trial_index.desc())
+        .limit(1)
+    ).one_or_none()
+
+
+def trials_of(connection: Connection, participant_id: int) -> Sequence[Record]:
+    """A participant's trials in order."""
+    return connection.execute(
+        select(trials)
+        .where(trials.c.participant_id == participant_id)
+        .order_by(trials.c.trial_index)
+    ).all()
+
+
+def count_answers(connection: Connection, participant_id: int) -> int:
+    """How many trials a participant has answered."""
+    return (
+        connection.scalar(
+            select(func.count())
+            .select_from(trials)
+            .where(trials.c.participant_id == participant_id, trials.c.answered_at.is_not(None))
+        )
+        or 0
+    )
+
+
+def add_trial(connection: Connection, participant_id: int, **values: Any) -> None:
+    """A trial whose first frame was played."""
+    connection.execute(insert(trials).values(participant_id=participant_id, **values))
+
+
+def change_trial(connection: Connection, participant_id: int, index: int, **values: Any) -> None:
+    """Add what became known of a trial."""
+    connection.execute(
+        update(trials)
+        .where(trials.c.participant_id == participant_id, trials.c.trial_index == index)
+        .values(**values)
+    )
+
+
+# --- the log -----------------------------------------------------------------------------------
+
+
+def log(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Append events; those of a message that was logged before are left out."""
+    if rows:
+        connection.execute(insert(events).on_conflict_do_nothing(), list(rows))
+
+
+# --- the export --------------------------------------------------------------------------------
+
+
+def all_trials(connection: Connection) -> Iterable[Record]:
+    """Every answered trial with its participant and condition, in order."""
+    return connection.execute(
+        select(
+            trials,
+            places.c.condition,
+            participants.c.pseudonym,
+            participants.c.stream,
+            participants.c.study_hash,
+            participants.c.app_version,
+        )
+        .join(participants, participants.c.id == trials.c.participant_id)
+        .join(places, places.c.participant_id == participants.c.id)
+        .where(trials.c.answered_at.is_not(None))
+        .order_by(participants.c.id, trials.c.trial_index)
+    )
+
+
+def all_participants(connection: Connection) -> Iterable[Record]:
+    """Every participant with place and demographics, in order of arrival."""
+    return connection.execute(
+        select(
+            participants,
+            places.c.condition,
+            places.c.dealt_at,
+            places.c.played_at,
+            *(column for column in demographics.c if column.name != "participant_id"),
+        )
+        .outerjoin(places, places.c.participant_id == participants.c.id)
+        .outerjoin(demographics, demographics.c.participant_id == participants.c.id)
+        .order_by(participants.c.id)
+    )
+
+
+def all_events(connection: Connection) -> Iterable[Record]:
+    """The log with pseudonyms, in its order."""
+    return connection.execute(
+        select(events, participants.c.pseudonym, participants.c.stream)
+        .join(participants, participants.c.id == events.c.participant_id)
+        .order_by(events.c.id)
+    )

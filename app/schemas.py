@@ -1,0 +1,89 @@
+"""What the trial page sends, as pydantic models that refuse whatever cannot be."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Key = Annotated[str, Field(min_length=8, max_length=64, pattern=r"^[A-Za-z0-9-]+$")]
+Count = Annotated[int, Field(ge=0, le=1_000_000)]
+Milliseconds = Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)]
+Pixels = Annotated[int, Field(ge=0, le=100_000)]
+EventType = Literal[
+    "shown",
+    "played",
+    "stopped",
+    "hidden",
+    "visible",
+    "focus_lost",
+    "focus_gained",
+    "resized",
+    "answered",
+    "retried",
+    "interrupted",
+    "continued",
+    "second_tab",
+]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class LoggedEvent(_Strict):
+    """Something that happened on the page, by the page's monotonic clock."""
+
+    type: EventType
+    client_time_ms: Milliseconds
+    details: dict[str, Any] = {}
+
+
+class Message(_Strict):
+    """Any message of the trial page; `key` stays the same however often it is delivered."""
+
+    key: Key
+    events: Annotated[list[LoggedEvent], Field(max_length=200)] = []
+
+
+class Device(_Strict):
+    """The browser as the page sees it."""
+
+    viewport_width: Pixels
+    viewport_height: Pixels
+    pixel_ratio: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)]
+    refresh_rate_hz: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)] | None = None
+    pointer_type: Annotated[str, Field(max_length=20)] | None = None
+    reduced_motion: bool
+
+
+class Played(Message):
+    """The first frame in motion was drawn."""
+
+    device: Device
+
+
+class Stopped(Message):
+    """The motion was stopped, or ran to its end."""
+
+    stop_time_ms: Milliseconds
+    reached_end: bool
+    pauses: Count
+    paused_ms: Milliseconds
+    focus_losses: Count
+    frames_dropped: Count
+    reduced_motion: bool
+
+
+class Answered(Message):
+    """Area and confidence were chosen."""
+
+    guess: Annotated[str, Field(pattern=r"^[A-Z]$")]
+    confidence: Annotated[int, Field(ge=1, le=7)]
+    guess_latency_ms: Milliseconds
+    confidence_latency_ms: Milliseconds
+
+
+class Logged(Message):
+    """Events that no answer carries, sent when somebody leaves the page."""
+
+    trial_index: Annotated[int, Field(ge=1)] | None = None
+    position_ms: Milliseconds | None = None

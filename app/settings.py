@@ -1,0 +1,76 @@
+"""Settings, each read from a variable GOALGUESS_<NAME>."""
+
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+from pydantic_settings import BaseSettings, SettingsConfigDict
+from sqlalchemy.engine import make_url
+from sqlalchemy.exc import ArgumentError
+
+from app.errors import InvalidInput
+
+
+class Settings(BaseSettings):
+    """All settings with their defaults; `goalguess serve --help` points to README's table."""
+
+    model_config = SettingsConfigDict(env_prefix="GOALGUESS_", frozen=True)
+
+    database_url: str = Field(
+        "sqlite:///goalguess.sqlite", description="Where answers are stored: a SQLite file."
+    )
+    withdrawals: Path | None = Field(
+        None,
+        description="List of withdrawn participants, by which a restored backup drops them "
+        "again (default: beside the database, ending in .withdrawn).",
+    )
+    study_open: bool = Field(True, description="Whether new participants may begin.")
+    researchers: str = Field("", description="Who runs the study, as the consent page says it.")
+    contact: str = Field("", description="How participants reach the researchers.")
+    seed: Annotated[int, Field(ge=0)] | None = Field(
+        None,
+        description="Seed of the dealing of conditions and lists, stored when the database is "
+        "made (default: drawn at random then).",
+    )
+    block_size: Annotated[int, Field(ge=2, multiple_of=2)] = Field(
+        4, description="Places in a block; each block holds both conditions equally often."
+    )
+    place_minutes: Annotated[float, Field(gt=0)] = Field(
+        30, description="A place whose first frame is not played for this long is dealt again."
+    )
+    step_ms: Annotated[int, Field(ge=20)] = Field(
+        1000, description="Duration of one maze step, ms."
+    )
+    lead_in_ms: Annotated[int, Field(ge=0)] = Field(
+        1500, description="Still picture before the motion, ms; not counted as time."
+    )
+    return_url: str = Field(
+        "https://app.prolific.com/submissions/complete?cc={code}",
+        description="Where participants go at the end; {code} is the ending's code.",
+    )
+    codes: dict[str, str] = Field(
+        {},
+        description="Recruiter's code of each ending, as JSON: completed, no_consent, "
+        "screened_out, failed, withdrawn. An ending without a code shows none.",
+    )
+
+    @cached_property
+    def database_file(self) -> Path:
+        """The SQLite file; InvalidInput for any other kind of database."""
+        try:
+            url = make_url(self.database_url)
+        except ArgumentError:
+            url = None
+        if url is None or url.get_backend_name() != "sqlite" or not url.database:
+            raise InvalidInput(
+                "GOALGUESS_DATABASE_URL: expected a SQLite file like "
+                f"sqlite:///goalguess.sqlite, came {self.database_url!r}"
+            )
+        return Path(url.database)
+
+    @property
+    def withdrawals_file(self) -> Path:
+        """The list of withdrawn participants, kept outside the database."""
+        file = self.database_file
+        return self.withdrawals or file.with_name(file.name + ".withdrawn")

@@ -1,0 +1,102 @@
+"""What the trial page fetches and sends, as JSON: parse, call, reply.
+
+Plain Starlette routes: they are most of what a participant requests, and FastAPI's own layers
+would double their cost.
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+from sqlalchemy import Connection
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from app import answering, enrolment
+from app.answering import Reply, Standing
+from app.deps import PATHS, as_json, participant_at, services, token_of
+from app.errors import InvalidInput
+from app.schemas import Answered, Logged, Message, Played, Stopped
+from app.steps import Step
+from app.study import Study
+
+M = TypeVar("M", bound=Message)
+Happen = Callable[[Connection, Study, str | None, int, M], Reply]
+
+
+async def practice(request: Request) -> Response:
+    """The practice animation."""
+    await participant_at(request, Step.PRACTICE)
+    study = services(request).study
+    return as_json(study.playback(study.pool.practice))
+
+
+async def trial(request: Request) -> Response:
+    """The trial the participant is at."""
+    token, at = token_of(request), services(request)
+
+    def find(connection: Connection) -> Standing | None:
+        participant = enrolment.participant_of(connection, token)
+        if participant.step in (Step.TRIALS,):
+            return answering.standing(connection, at.study, participant)
+        return None
+
+    return as_json(_state(at.study, await at.database.read(find)))
+
+
+async def log(request: Request) -> Response:
+    """Events that no answer carries."""
+    message, at, token = await _message(request, Logged), services(request), token_of(request)
+    await at.database.write(lambda c: answering.logged(c, token, message))
+    return as_json({})
+
+
+def _route(moment: str, model: type[M], happen: "Happen[M]") -> Route:
+    """The route to which the page sends one moment of a trial."""
+
+    async def endpoint(request: Request) -> Response:
+        message, at, token = await _message(request, model), services(request), token_of(request)
+        index = request.path_params["index"]
+        reply = await at.database.write(lambda c: happen(c, at.study, token, index, message))
+        state = _state(at.study, reply.standing)
+        return as_json({"repeated": reply.repeated, **state, "next": _END if reply.done else None})
+
+    return Route(f"/api/trials/{{index:int}}/{moment}", endpoint, methods=["POST"])
+
+
+_END = PATHS[Step.COMPLETED]
+
+routes = [
+    Route("/api/practice", practice),
+    Route("/api/trial", trial),
+    Route("/api/events", log, methods=["POST"]),
+    _route("played", Played, answering.played),
+    _route("stopped", Stopped, answering.stopped),
+    _route("answered", Answered, answering.answered),
+]
+
+
+async def _message(request: Request, model: type[M]) -> M:
+    try:
+        return model.model_validate_json(await request.body())
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"]) or "body"
+        raise InvalidInput(f"{where}: {first['msg']}, came {str(first['input'])[:80]!r}") from error
+
+
+def _state(study: Study, standing: Standing | None) -> dict[str, Any]:
+    if standing is None:
+        return {"trial": None, "next": _END}
+    return {
+        "trial": {
+            "index": standing.index,
+            "of": study.trials,
+            "phase": standing.phase,
+            "position_ms": standing.position_ms,
+            "stop_time_ms": standing.stop_time_ms,
+            "playback": study.playback(standing.stimulus),
+        },
+        "next": None,
+    }
