@@ -32,9 +32,9 @@ def serve(
     import uvicorn
 
     from app.main import create_app
-    from app.settings import Settings
+    from app.settings import load_settings
 
-    settings = Settings()
+    settings = load_settings()
     app = create_app(settings)
     server = uvicorn.Server(uvicorn.Config(app, host=host, port=port, log_level="warning"))
     typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
@@ -56,10 +56,10 @@ def export(
     from app.errors import DatabaseMismatch
     from app.export import export as write_export
     from app.main import open_database
-    from app.settings import Settings
+    from app.settings import load_settings
     from app.study import load_study
 
-    settings = Settings()
+    settings = load_settings()
     if not settings.database_file.exists():
         raise DatabaseMismatch(
             f"{settings.database_file}: expected a database with answers, found no such file; "

@@ -97,11 +97,15 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
             for work, done in group:
                 try:
                     with connection.begin_nested():
-                        outcomes.append((done, work(connection), None))
-                except Exception as error:
-                    outcomes.append((done, None, error))
-    except BaseException as error:
-        outcomes = [(waiting.done, None, error) for waiting in group]
+                        result = work(connection)
+                except Exception as failure:
+                    outcomes.append((done, None, failure))
+                else:
+                    outcomes.append((done, result, None))
+    except BaseException as failure:
+        # SQLite keeps a transaction open whose COMMIT failed; SQLAlchemy takes it for ended.
+        connection.connection.rollback()
+        outcomes = [(waiting.done, None, failure) for waiting in group]
     for done, result, error in outcomes:
         if error is None:
             done.set_result(result)

@@ -13,7 +13,7 @@ from app.database import Database
 from app.errors import WrongStep
 from app.pages import Pages
 from app.repository import Record
-from app.settings import Settings
+from app.settings import Ending, Settings
 from app.steps import ENDINGS, Step
 from app.study import Study
 
@@ -88,11 +88,11 @@ def page(
     )
 
 
-def recruiter(request: Request, ending: str) -> dict[str, str | None]:
+def recruiter(request: Request, ending: Ending) -> dict[str, str | None]:
     """The way back to the recruiter from an ending, where it has a code."""
     settings = services(request).settings
     code = settings.codes.get(ending)
-    return {"code": code, "url": settings.return_url.format(code=code) if code else None}
+    return {"code": code, "url": settings.return_url.replace("{code}", code) if code else None}
 
 
 def see(path: str, token: str | None = None, secure: bool = False) -> RedirectResponse:

@@ -46,8 +46,8 @@ class Link:
                 raise InvalidInput(
                     f"{name}: expected at most {LONGEST_ID} printable characters in the link."
                 )
-        pilot = next((stream for stream in STREAMS[1:] if values.get(stream)), STREAMS[0])
-        return cls(*ids, stream=pilot)
+        stream = next((pilot for pilot in STREAMS[1:] if values.get(pilot)), STREAMS[0])
+        return cls(ids[0], ids[1], ids[2], stream)
 
     def fields(self) -> dict[str, str]:
         """The same as hidden fields of the consent form."""

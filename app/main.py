@@ -21,9 +21,8 @@ from app.study import Study, load_study
 log = logging.getLogger("goalguess")
 
 
-def create_app(settings: Settings | None = None) -> FastAPI:
+def create_app(settings: Settings) -> FastAPI:
     """The study as an ASGI application; its database is opened when it starts."""
-    settings = settings or Settings()
     study = load_study(settings)
     pages = Pages(study)
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
+from sqlalchemy.exc import DBAPIError
 
 from app.database import sqlite_engine
 from app.errors import DatabaseMismatch
@@ -19,6 +20,10 @@ def prepare(url: str, name: str) -> None:
             found = _revision(connection, name)
             if found != HEAD:
                 _upgrade(connection, found, name)
+    except DBAPIError as error:
+        raise DatabaseMismatch(
+            f"{name}: expected a SQLite database in a folder that exists: {error.orig}"
+        ) from error
     finally:
         engine.dispose()
 
@@ -31,7 +36,8 @@ def _revision(connection: Connection, name: str) -> str | None:
         raise DatabaseMismatch(
             f"{name}: expected a Goalguess database or no file, found tables of another program"
         )
-    return connection.scalar(text("SELECT version_num FROM alembic_version"))
+    found: str | None = connection.scalar(text("SELECT version_num FROM alembic_version"))
+    return found
 
 
 def _upgrade(connection: Connection, found: str | None, name: str) -> None:

@@ -2,14 +2,16 @@
 
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import Field
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError
 
 from app.errors import InvalidInput
+
+Ending = Literal["completed", "no_consent", "screened_out", "failed", "withdrawn"]
 
 
 class Settings(BaseSettings):
@@ -49,7 +51,7 @@ class Settings(BaseSettings):
         "https://app.prolific.com/submissions/complete?cc={code}",
         description="Where participants go at the end; {code} is the ending's code.",
     )
-    codes: dict[str, str] = Field(
+    codes: dict[Ending, str] = Field(
         {},
         description="Recruiter's code of each ending, as JSON: completed, no_consent, "
         "screened_out, failed, withdrawn. An ending without a code shows none.",
@@ -74,3 +76,17 @@ class Settings(BaseSettings):
         """The list of withdrawn participants, kept outside the database."""
         file = self.database_file
         return self.withdrawals or file.with_name(file.name + ".withdrawn")
+
+
+def load_settings() -> Settings:
+    """The settings of this process's environment; InvalidInput names the variable at fault."""
+    try:
+        return Settings()
+    except SettingsError as error:
+        raise InvalidInput(f"GOALGUESS_*: expected JSON, {error}") from error
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        name = "_".join(str(part) for part in first["loc"]).upper()
+        raise InvalidInput(
+            f"GOALGUESS_{name}: {first['msg']}, came {str(first['input'])!r}"
+        ) from error

@@ -1,0 +1,136 @@
+"""A study of one's own for each test: settings, a fresh database, and browsers to visit it."""
+
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from httpx2 import Response
+from sqlalchemy import Select, Table, select
+from starlette.testclient import TestClient
+
+from app.database import Database
+from app.main import create_app, open_database
+from app.schema import prepare
+from app.settings import Settings
+from app.study import Study, load_study
+from tests import messages
+
+ORIGIN = "http://study.test"
+
+
+@pytest.fixture(scope="session")
+def empty_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A migrated, empty database to copy."""
+    file = tmp_path_factory.mktemp("database") / "empty.sqlite"
+    prepare(f"sqlite:///{file}", str(file))
+    return file
+
+
+@pytest.fixture
+def settings(tmp_path: Path, empty_database: Path) -> Settings:
+    file = tmp_path / "study.sqlite"
+    shutil.copy(empty_database, file)
+    return Settings(database_url=f"sqlite:///{file}", seed=1, codes={"completed": "DONE1"})
+
+
+@pytest.fixture
+def study(settings: Settings) -> Study:
+    return load_study(settings)
+
+
+@pytest.fixture
+def database(settings: Settings, study: Study) -> Iterator[Database]:
+    database = open_database(settings, study)
+    yield database
+    database.close()
+
+
+class Browser:
+    """A participant's browser: keeps cookies, sends what our pages send."""
+
+    def __init__(self, client: TestClient) -> None:
+        self.client = client
+
+    def get(self, path: str) -> Response:
+        return self.client.get(path, follow_redirects=False)
+
+    def post(self, path: str, form: dict[str, str] | None = None) -> Response:
+        headers = {"origin": ORIGIN}
+        return self.client.post(path, data=form or {}, headers=headers, follow_redirects=False)
+
+    def send(self, path: str, body: dict[str, Any]) -> Response:
+        return self.client.post(path, json=body, headers={"origin": ORIGIN})
+
+    def consent(self, query: str = "") -> Response:
+        page = self.get(f"/{query}")
+        fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
+        return self.post("/consent", {**fields, "decision": "yes"})
+
+    def reach_practice(self, query: str = "") -> None:
+        self.consent(query)
+        self.post("/about-you", messages.ABOUT_ME)
+        self.post("/instructions")
+
+    def reach_trials(self, query: str = "") -> None:
+        self.reach_practice(query)
+        assert self.post("/practice", messages.RIGHT_ANSWER).headers["location"] == "/trial"
+
+    def trial(self) -> dict[str, Any]:
+        state: dict[str, Any] = self.get("/api/trial").json()
+        return state
+
+    def play(self, index: int, **changes: Any) -> Response:
+        return self.send(f"/api/trials/{index}/played", messages.played(**changes))
+
+    def stop(self, index: int, stop_time_ms: float, **changes: Any) -> Response:
+        return self.send(f"/api/trials/{index}/stopped", messages.stopped(stop_time_ms, **changes))
+
+    def answer(self, index: int, guess: str = "A", **changes: Any) -> Response:
+        return self.send(f"/api/trials/{index}/answered", messages.answered(guess, **changes))
+
+    def finish_trial(self, index: int, guess: str = "A", stop_time_ms: float = 5000) -> Response:
+        self.play(index)
+        self.stop(index, stop_time_ms)
+        return self.answer(index, guess)
+
+    def take_part(self, query: str = "") -> None:
+        """The whole study."""
+        self.reach_trials(query)
+        for index in range(1, 11):
+            assert self.finish_trial(index).status_code == 200
+
+
+@pytest.fixture
+def client(settings: Settings) -> Iterator[TestClient]:
+    with TestClient(create_app(settings), base_url=ORIGIN) as client:
+        yield client
+
+
+@pytest.fixture
+def browser(client: TestClient) -> Browser:
+    return Browser(client)
+
+
+@pytest.fixture
+def another_browser(client: TestClient) -> Callable[[], Browser]:
+    """Makes further browsers that visit the same study."""
+
+    def make() -> Browser:
+        return Browser(TestClient(client.app, base_url=ORIGIN))
+
+    return make
+
+
+@pytest.fixture
+def rows(client: TestClient) -> Callable[..., list[Any]]:
+    """Reads stored rows of a table, or of any query."""
+
+    def read(what: Table | Select[Any]) -> list[Any]:
+        query = select(what) if isinstance(what, Table) else what
+        database: Database = client.app.state.services.database  # type: ignore[attr-defined]
+        return list(database.read_now(lambda connection: connection.execute(query).all()))
+
+    return read

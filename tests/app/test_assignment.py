@@ -1,0 +1,82 @@
+"""Dealing: bounds of the instrument, over seeds and over every number of places dealt."""
+
+from collections import Counter
+from itertools import chain, islice
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.assignment import Place, balanced_lists, deal_block, lists_in_cycle
+from app.errors import DealingFailed
+from policies import Scenario, load_pool
+
+SCENARIOS = load_pool().scenarios
+BY_ID = {scenario.id: scenario for scenario in SCENARIOS}
+
+
+def places(seed: int, count: int, size: int = 4, stream: str = "participant") -> list[Place]:
+    blocks = (deal_block(seed, stream, block, size, SCENARIOS) for block in range(count))
+    return list(islice(chain.from_iterable(blocks), count))
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([2, 4, 6, 10]))
+@settings(max_examples=20, deadline=None)
+def test_conditions_never_differ_by_more_than_half_a_block(seed, size):
+    ahead = 0
+    for place in places(seed, 60, size):
+        ahead += 1 if place.condition == "polmdp" else -1
+        assert abs(ahead) <= size / 2
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=5, deadline=None)
+def test_within_a_condition_no_scenario_is_ahead_of_another_by_more_than_one(seed):
+    used = {condition: Counter(dict.fromkeys(BY_ID, 0)) for condition in ("polmdp", "optimal")}
+    for place in places(seed, 200):
+        used[place.condition].update(place.scenarios)
+        counts = used[place.condition].values()
+        assert max(counts) - min(counts) <= 1
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=5, deadline=None)
+def test_each_list_has_ten_scenarios_each_goal_1_to_3_times_and_each_maze_1_to_4_times(seed):
+    for place in places(seed, 160):
+        assert len(set(place.scenarios)) == 10
+        goals = Counter(BY_ID[one].goal for one in place.scenarios)
+        mazes = Counter(BY_ID[one].maze for one in place.scenarios)
+        assert len(goals) == 6
+        assert set(goals.values()) <= {1, 2, 3}
+        assert len(mazes) == 4
+        assert set(mazes.values()) <= {1, 2, 3, 4}
+
+
+def test_the_same_seed_deals_the_same_places():
+    assert places(7, 40) == places(7, 40)
+
+
+def test_another_seed_or_stream_deals_other_places():
+    assert places(7, 8) != places(8, 8)
+    assert places(7, 8) != places(7, 8, stream="simulated")
+
+
+def test_places_are_numbered_through_the_blocks():
+    assert [place.number for place in places(1, 12)] == list(range(12))
+
+
+def test_a_cycle_of_lists_uses_every_scenario_equally_often():
+    lists = balanced_lists(SCENARIOS, (1, 2))
+    assert len(lists) == lists_in_cycle(SCENARIOS) == 37
+    assert set(Counter(chain.from_iterable(lists)).values()) == {10}
+
+
+def test_the_order_within_lists_is_random():
+    firsts = {scenarios[0] for scenarios in balanced_lists(SCENARIOS, (3,))}
+    assert len(firsts) > 15
+
+
+def test_a_pool_that_allows_no_balanced_list_is_refused():
+    one_goal = tuple(Scenario(f"s{i}", "maze", i, "A") for i in range(12))
+    with pytest.raises(DealingFailed, match="12 scenarios given allow none"):
+        balanced_lists(one_goal, (1,))

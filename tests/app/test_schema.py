@@ -1,0 +1,78 @@
+"""The schema: made by migrations, and only what is ours is opened."""
+
+import sqlite3
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+
+import app.schema
+from app.database import sqlite_engine
+from app.errors import DatabaseMismatch
+from app.schema import HEAD, prepare
+from app.tables import metadata
+
+
+def prepare_file(file: Path) -> None:
+    prepare(f"sqlite:///{file}", str(file))
+
+
+def test_migrations_make_exactly_the_tables_that_the_code_declares(tmp_path):
+    prepare_file(tmp_path / "new.sqlite")
+    with sqlite_engine(f"sqlite:///{tmp_path}/new.sqlite", "BEGIN").connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), metadata) == []
+
+
+def test_the_newest_migration_is_the_version_the_code_works_with():
+    config = Config()
+    folder = Path(app.schema.__file__).parent / "migrations"
+    config.set_main_option("script_location", str(folder))
+    assert ScriptDirectory.from_config(config).get_current_head() == HEAD
+
+
+def test_preparing_again_changes_nothing(tmp_path):
+    file = tmp_path / "study.sqlite"
+    prepare_file(file)
+    before = file.read_bytes()
+    prepare_file(file)
+    assert file.read_bytes() == before
+
+
+def test_a_database_of_an_unknown_version_is_refused_and_not_touched(tmp_path):
+    file = tmp_path / "newer.sqlite"
+    prepare_file(file)
+    with sqlite3.connect(file) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '9999'")
+    connection.close()
+    before = file.read_bytes()
+    with pytest.raises(DatabaseMismatch, match=r"newer\.sqlite.*found version '9999'"):
+        prepare_file(file)
+    assert file.read_bytes() == before
+
+
+def test_a_database_of_another_program_is_refused_and_not_touched(tmp_path):
+    file = tmp_path / "other.sqlite"
+    with sqlite3.connect(file) as connection:
+        connection.execute("CREATE TABLE recipes (name TEXT)")
+    connection.close()
+    before = file.read_bytes()
+    with pytest.raises(DatabaseMismatch, match="tables of another program"):
+        prepare_file(file)
+    assert file.read_bytes() == before
+
+
+def test_a_file_that_is_no_database_is_refused_in_one_line(tmp_path):
+    file = tmp_path / "notes.sqlite"
+    file.write_text("Dear diary, " * 200)
+    with pytest.raises(DatabaseMismatch, match="expected a SQLite database") as error:
+        prepare_file(file)
+    assert "\n" not in str(error.value)
+    assert file.read_text().startswith("Dear diary")
+
+
+def test_a_missing_folder_is_refused_in_one_line(tmp_path):
+    with pytest.raises(DatabaseMismatch, match="in a folder that exists"):
+        prepare_file(tmp_path / "nowhere" / "study.sqlite")
