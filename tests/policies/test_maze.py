@@ -1,0 +1,205 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from policies import Action, MazeError, PolicyError, format_maze, parse_maze, random_maze, read_maze
+
+SMALL = """\
++---+---+---+
+| A   .   . |
++   +---+   +
+| .   . | B |
++---+---+---+
+"""
+
+
+def put(line: int, column: int, text: str) -> str:
+    """SMALL with `text` written at a 1-based line and column."""
+    lines = SMALL.splitlines()
+    old = lines[line - 1]
+    lines[line - 1] = old[: column - 1] + text + old[column - 1 + len(text) :]
+    return "\n".join(lines)
+
+
+def message(text: str) -> str:
+    with pytest.raises(MazeError) as caught:
+        parse_maze(text, source="small.txt")
+    return str(caught.value)
+
+
+def same(one, other) -> bool:
+    return (
+        (one.rows, one.cols, dict(one.goals)) == (other.rows, other.cols, dict(other.goals))
+        and np.array_equal(one.wall_right, other.wall_right)
+        and np.array_equal(one.wall_below, other.wall_below)
+    )
+
+
+class TestParsing:
+    def test_reads_size_goals_and_walls(self):
+        maze = parse_maze(SMALL)
+        assert (maze.rows, maze.cols, maze.states) == (2, 3, 6)
+        assert dict(maze.goals) == {"A": 0, "B": 5}
+        assert maze.wall_below.tolist() == [[False, True, False]]
+        assert maze.wall_right.tolist() == [[False, False], [False, True]]
+
+    def test_orders_goals_by_letter_not_by_place(self):
+        maze = parse_maze("+---+---+---+\n| C   .   A |\n+---+---+---+\n")
+        assert maze.letters == ("A", "C")
+        assert maze.goal_index("C") == 1
+
+    def test_writes_back_the_same_text(self):
+        assert format_maze(parse_maze(SMALL)) == SMALL
+
+    def test_does_not_mind_the_line_ends_of_other_systems(self):
+        assert same(parse_maze(SMALL.replace("\n", "\r\n")), parse_maze(SMALL))
+
+    def test_reads_a_maze_of_one_cell(self):
+        maze = parse_maze("+---+\n| A |\n+---+\n")
+        assert maze.states == 1
+        assert maze.successors.tolist() == [[0, 0, 0, 0, 0]]
+
+    def test_goals_cannot_be_changed(self):
+        with pytest.raises(TypeError):
+            parse_maze(SMALL).goals["A"] = 3  # type: ignore[index]
+
+    @given(st.integers(1, 8), st.integers(1, 8), st.integers(0, 10**6), st.floats(0, 1), st.data())
+    def test_any_random_maze_survives_writing_and_reading(self, rows, cols, seed, openness, data):
+        goals = data.draw(st.integers(1, min(26, rows * cols)))
+        maze = random_maze(rows, cols, goals, np.random.default_rng(seed), openness)
+        assert same(parse_maze(format_maze(maze)), maze)
+
+
+class TestFaults:
+    @pytest.mark.parametrize(
+        ("line", "column", "sign", "expected"),
+        [
+            (1, 1, "x", "small.txt:1:1: expected '+', found 'x'"),
+            (1, 6, "   ", "small.txt:1:6: expected '---', found '   '"),
+            (3, 2, "--.", "small.txt:3:2: expected '---' or '   ', found '--.'"),
+            (3, 5, " ", "small.txt:3:5: expected '+', found ' '"),
+            (5, 13, "-", "small.txt:5:13: expected '+', found '-'"),
+            (2, 1, " ", "small.txt:2:1: expected '|', found ' '"),
+            (2, 13, " ", "small.txt:2:13: expected '|', found ' '"),
+            (4, 5, "!", "small.txt:4:5: expected '|' or ' ', found '!'"),
+            (2, 2, "-", "small.txt:2:2: expected ' ', found '-'"),
+            (4, 4, "x", "small.txt:4:4: expected ' ', found 'x'"),
+            (2, 7, "b", "small.txt:2:7: expected a cell: '.' or a capital letter, found 'b'"),
+            (2, 7, "Ä", "small.txt:2:7: expected a cell: '.' or a capital letter, found 'Ä'"),
+            (2, 7, " ", "small.txt:2:7: expected a cell: '.' or a capital letter, found ' '"),
+            (4, 11, "A", "small.txt:4:11: expected a letter not used before, found 'A'"),
+        ],
+    )
+    def test_a_wrong_sign_is_named_with_line_and_column(self, line, column, sign, expected):
+        assert message(put(line, column, sign)) == expected
+
+    def test_a_line_too_short_is_named_where_it_ends(self):
+        ragged = SMALL.replace("| .   . | B |", "| .   . | B")
+        assert message(ragged) == "small.txt:4:12: expected 13 characters as in line 1, found 11"
+
+    def test_a_line_too_long_is_named_where_it_should_end(self):
+        ragged = SMALL.replace("| .   . | B |", "| .   . | B |  ")
+        assert message(ragged) == "small.txt:4:14: expected 13 characters as in line 1, found 15"
+
+    @pytest.mark.parametrize("kept", [0, 1, 2, 4])
+    def test_a_missing_line_is_named_after_the_last(self, kept):
+        text = "\n".join(SMALL.splitlines()[:kept])
+        assert message(text).startswith(f"small.txt:{kept + 1}:1: expected an odd number of lines")
+
+    @pytest.mark.parametrize("border", ["+", "+--", "+---", "+---+-"])
+    def test_a_border_of_no_whole_cells_is_named_in_line_1(self, border):
+        found = message("\n".join([border] * 3))
+        assert found.startswith(f"small.txt:1:{len(border) + 1}: expected a border of '+---'")
+
+    def test_a_goal_walled_in_is_named_with_a_cell_that_is_cut_off(self):
+        cut = put(3, 10, "---")
+        assert message(cut) == (
+            "small.txt:2:3: expected goal A to be reachable from every cell, "
+            "found no way from the cell at 4:11"
+        )
+
+    def test_a_maze_without_goals_is_refused(self):
+        assert "at least one goal" in message("+---+\n| . |\n+---+\n")
+
+    def test_every_error_is_a_policy_error(self):
+        assert issubclass(MazeError, PolicyError)
+
+    def test_a_letter_that_is_no_goal_is_answered_with_those_that_are(self):
+        with pytest.raises(MazeError, match=r"a goal of the maze \(A B\), came 'C'"):
+            parse_maze(SMALL).goal_index("C")
+
+
+class TestFiles:
+    def test_the_error_names_the_file(self, tmp_path):
+        path = tmp_path / "broken.txt"
+        path.write_text(put(2, 2, "-"), encoding="utf-8")
+        with pytest.raises(MazeError, match=r"broken\.txt:2:2: "):
+            read_maze(path)
+
+    def test_a_byte_order_mark_is_no_fault(self, tmp_path):
+        path = tmp_path / "marked.txt"
+        path.write_text(SMALL, encoding="utf-8-sig")
+        assert same(read_maze(path), parse_maze(SMALL))
+
+    def test_a_missing_file_is_a_maze_error(self, tmp_path):
+        with pytest.raises(MazeError, match=r"none\.txt: expected a readable file"):
+            read_maze(tmp_path / "none.txt")
+
+    def test_bytes_that_are_no_text_are_a_maze_error(self, tmp_path):
+        path = tmp_path / "bytes.txt"
+        path.write_bytes(b"\xff\xfe\x00")
+        with pytest.raises(MazeError, match="UTF-8"):
+            read_maze(path)
+
+
+class TestMoving:
+    def test_moves_lead_to_neighbours_and_walls_stop_them(self):
+        after = parse_maze(SMALL).successors
+        assert after[0].tolist() == [0, 3, 0, 1, 0]
+        assert after[1].tolist() == [1, 1, 0, 2, 1]
+        assert after[4].tolist() == [4, 4, 3, 4, 4]
+
+    @given(st.integers(0, 10**6))
+    def test_every_way_leads_back(self, seed):
+        after = random_maze(4, 5, 1, np.random.default_rng(seed)).successors
+        back = [Action.DOWN, Action.UP, Action.RIGHT, Action.LEFT]
+        for x in range(20):
+            for a in range(4):
+                assert after[x, a] == x or after[after[x, a], back[a]] == x
+
+
+class TestRandomMazes:
+    def test_the_same_seed_gives_the_same_maze(self, draw_maze):
+        assert format_maze(draw_maze(9, 7, 4, seed=3)) == format_maze(draw_maze(9, 7, 4, seed=3))
+
+    def test_other_seeds_give_other_mazes(self, draw_maze):
+        assert len({format_maze(draw_maze(6, 6, 3, seed=s)) for s in range(20)}) == 20
+
+    def test_without_openings_it_is_a_tree(self, draw_maze):
+        maze = draw_maze(7, 9, 2, openness=0)
+        assert len(maze.edges.data) / 2 == 63 - 1
+
+    def test_openness_is_the_share_of_other_walls_removed(self, draw_maze):
+        maze = draw_maze(10, 10, 2, openness=0.2)
+        others = 180 - 99
+        assert maze.wall_right.sum() + maze.wall_below.sum() == others - round(0.2 * others)
+
+    def test_fully_open_has_no_walls(self, draw_maze):
+        maze = draw_maze(5, 5, 2, openness=1)
+        assert not maze.wall_right.any()
+        assert not maze.wall_below.any()
+
+    @pytest.mark.parametrize(
+        ("rows", "cols", "goals", "openness", "said"),
+        [
+            (0, 3, 1, 0.2, "0 x 3 cells"),
+            (3, 3, 0, 0.2, "0 goals"),
+            (2, 2, 5, 0.2, "1 to 4 goals"),
+            (9, 9, 27, 0.2, "1 to 26 goals"),
+            (3, 3, 1, 1.5, "openness from 0 to 1, came 1.5"),
+        ],
+    )
+    def test_impossible_mazes_are_refused(self, draw_maze, rows, cols, goals, openness, said):
+        with pytest.raises(MazeError, match=said):
+            draw_maze(rows, cols, goals, openness=openness)
