@@ -18,17 +18,24 @@ def correct_guesses(guess: pl.Series, goal: pl.Series) -> pl.Series:
 def prediction_times_s(
     stop_time_s: pl.Series, length_s: pl.Series, correct: pl.Series
 ) -> pl.Series:
-    """Return each trial's time of prediction, s; null where a part is missing or impossible.
-
-    Impossible is a stop after the end: `trial_rules` reports it as an error of its row.
-    """
-    possible = stop_time_s.zip_with(stop_time_s <= length_s, stop_time_s.clear(len(stop_time_s)))
+    """Return each trial's time of prediction, s; null where a part is missing or impossible."""
+    possible = _possible(stop_time_s, length_s)
     return _row_by_row(measures.prediction_time_s, pl.Float64(), possible, length_s, correct)
 
 
 def scores(correct: pl.Series, stop_time_s: pl.Series, length_s: pl.Series) -> pl.Series:
-    """Return each trial's points, 0 to 10; null where a part is missing."""
-    return _row_by_row(measures.score, pl.Float64(), correct, stop_time_s, length_s)
+    """Return each trial's points, 0 to 10; null where a part is missing or impossible."""
+    possible = _possible(stop_time_s, length_s)
+    return _row_by_row(measures.score, pl.Float64(), correct, possible, length_s)
+
+
+def _possible(stop_time_s: pl.Series, length_s: pl.Series) -> pl.Series:
+    """Return the stop times, null where they break 0 <= stop <= length or there is no length.
+
+    Such rows are errors, which the rules of the trials report; here they only must not count.
+    """
+    sound = (stop_time_s >= 0) & (stop_time_s <= length_s) & (length_s > 0)
+    return stop_time_s.zip_with(sound, stop_time_s.clear(len(stop_time_s)))
 
 
 def _row_by_row(

@@ -1,0 +1,38 @@
+"""Data sets made for the tests, through the same door the app uses."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis import EVENTS, PARTICIPANTS, TRIALS, write_table
+from tests.analysis.rows import HERE, event_row, participants_of, six_participants
+
+
+@pytest.fixture(scope="session")
+def paper_fixture() -> Path:
+    """Synthetic trials made to reproduce the numbers that the paper prints.
+
+    They are not the authors' data, which are not published.
+    """
+    return HERE / "paper_fixture.csv"
+
+
+@pytest.fixture
+def export(tmp_path: Path) -> Path:
+    """An export folder of six participants."""
+    folder = tmp_path / "export"
+    rows = six_participants()
+    write_table(TRIALS, rows, folder)
+    write_table(PARTICIPANTS, participants_of(rows), folder)
+    write_table(EVENTS, [event_row(1)], folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def golden() -> Callable[[str], dict[str, Any]]:
+    """Look up a case of golden.json by id: input, expected numbers, their source, tolerance."""
+    cases = json.loads((HERE / "golden.json").read_text())
+    return {case["id"]: case for case in cases}.__getitem__

@@ -1,0 +1,72 @@
+"""Numbers as they are printed."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from analysis.paper_tests import TwoByTwo, chi_square, mann_whitney, normality
+from analysis.wording import (
+    chi_square_apa,
+    format_p,
+    format_u,
+    mann_whitney_apa,
+    normality_apa,
+    percent,
+    without_zero,
+)
+
+
+def test_golden_apa_format(golden):
+    case = golden("apa_format")
+    assert [format_p(p) for p in case["input"]] == case["expected"]
+
+
+@given(st.floats(0, 1))
+def test_a_printed_p_never_says_zero_and_never_crosses_alpha(p):
+    printed = format_p(p)
+    assert printed != "p = .000"
+    if printed.startswith("p = "):
+        assert (float(printed.removeprefix("p = ")) < 0.05) == (p < 0.05)
+
+
+def test_a_p_at_the_end_of_a_table_is_printed_as_a_bound():
+    assert format_p(0.01, "<=") == "p <= .010"
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"), [(0.18, ".180"), (-0.302, "-.302"), (1.0, "1.000"), (0.0, ".000")]
+)
+def test_numbers_up_to_one_have_no_leading_zero(value, printed):
+    assert without_zero(value, 3) == printed
+
+
+def test_a_u_keeps_the_half_of_a_tie():
+    assert (format_u(177976.0), format_u(19.5)) == ("177976", "19.5")
+
+
+def test_percentages_have_one_decimal():
+    assert percent(832 / 980) == "84.9 %"
+
+
+def test_chi_square_prints_in_one_line():
+    line = chi_square_apa(chi_square(TwoByTwo(832, 148, 362, 158)))
+    assert line == "chi2(1) = 48.864, p < .001, N = 1500, phi = .180"
+
+
+def test_an_undefined_chi_square_prints_na():
+    line = chi_square_apa(chi_square(TwoByTwo(3, 0, 4, 0)))
+    assert line == "chi2(1) = NA, p > .999, N = 7, phi = NA"
+
+
+def test_mann_whitney_prints_both_us():
+    line = mann_whitney_apa(mann_whitney([3, 4, 5], [1, 2]))
+    assert line.startswith("U = 0, p = .083, z = 1.73, n = 3 and 2, rank-biserial r = 1.000")
+    assert "U of the treatment = 6" in line
+
+
+def test_an_undefined_normality_says_so():
+    assert normality_apa(normality([1.0])) == "Shapiro-Wilk: not defined, n = 1"
+
+
+def test_normality_prints_its_statistic():
+    assert normality_apa(normality([1.0, 2.0, 3.0])).startswith("Shapiro-Wilk: W = 1.0000, p ")
