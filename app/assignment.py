@@ -1,7 +1,7 @@
 """Dealing: which condition and which scenarios the next place holds. Plain values only."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import lcm
@@ -13,9 +13,9 @@ from app.errors import DealingFailed
 from policies import CONDITIONS, Scenario
 
 LIST_LENGTH = 10
-GOAL_USES = range(1, 4)
-MAZE_USES = range(1, 5)
-_TRIES = 300
+MOST_PER_GOAL = 3
+MOST_PER_MAZE = 4
+_SWAPS = 5000
 
 Scenarios = tuple[Scenario, ...]
 
@@ -61,68 +61,53 @@ def balanced_lists(scenarios: Scenarios, seed: tuple[int, ...]) -> tuple[tuple[s
     allows no such lists.
     """
     rng = np.random.default_rng(seed)
-    lists: list[Scenarios] = []
-    begun: Scenarios = ()
-    while len(lists) < lists_in_cycle(scenarios):
-        for _ in range(_TRIES):
-            cut = _cut_deck(scenarios, begun, rng)
-            if cut:
-                break
-        else:
-            raise DealingFailed(
-                f"expected a pool from which lists of {LIST_LENGTH} can be drawn with each goal "
-                f"1-3 and each maze 1-4 times; the {len(scenarios)} scenarios given allow none"
-            )
-        lists.extend(cut[0])
-        begun = cut[1]
-    return tuple(tuple(chosen[i].id for i in rng.permutation(LIST_LENGTH)) for chosen in lists)
+    lists: list[list[Scenario]] = [[]]
+    while len(lists) <= lists_in_cycle(scenarios):
+        begun = lists.pop()
+        lists.extend(_cut_deck(scenarios, begun, rng))
+    return tuple(tuple(chosen[i].id for i in rng.permutation(LIST_LENGTH)) for chosen in lists[:-1])
 
 
 def _cut_deck(
-    scenarios: Scenarios, begun: Scenarios, rng: np.random.Generator
-) -> tuple[list[Scenarios], Scenarios] | None:
-    """Finish the list begun and cut more from one deck; what is left begins the next list."""
-    lists: list[Scenarios] = []
-    left = scenarios
-    while len(begun) + len(left) >= LIST_LENGTH:
-        chosen = _complete(begun, left, scenarios, rng)
-        if chosen is None:
-            return None
-        lists.append(chosen)
-        used = set(chosen) - set(begun)
-        left = tuple(s for s in left if s not in used)
-        begun = ()
-    return (lists, left) if _may_begin(left, scenarios) else None
+    scenarios: Scenarios, begun: list[Scenario], rng: np.random.Generator
+) -> list[list[Scenario]]:
+    """Finish the list begun and cut more from one shuffled deck; the last one is a list begun.
 
+    Scenarios are swapped between lists until each list is balanced.
+    """
+    cards = [*begun, *(scenarios[i] for i in rng.permutation(len(scenarios)))]
 
-def _complete(
-    begun: Scenarios, left: Scenarios, scenarios: Scenarios, rng: np.random.Generator
-) -> Scenarios | None:
-    """A balanced list that starts with `begun` and takes the rest, all different, from `left`."""
-    fresh = [s for s in left if s not in begun]
-    wanted = LIST_LENGTH - len(begun)
-    if len(fresh) < wanted:
-        return None
-    for _ in range(_TRIES):
-        drawn = rng.choice(len(fresh), wanted, replace=False)
-        chosen = (*begun, *(fresh[i] for i in drawn))
-        if all(set(counts.values()) <= set(uses) for counts, uses in _uses(chosen, scenarios)):
-            return chosen
-    return None
+    def lists_of(where: Iterable[int]) -> list[list[Scenario]]:
+        return [cards[i * LIST_LENGTH : (i + 1) * LIST_LENGTH] for i in where]
 
-
-def _may_begin(begun: Scenarios, scenarios: Scenarios) -> bool:
-    """Whether a list can still become balanced: nothing too often, room for what is missing."""
-    room = LIST_LENGTH - len(begun)
-    return all(
-        max(counts.values()) <= uses[-1] and sum(n == 0 for n in counts.values()) <= room
-        for counts, uses in _uses(begun, scenarios)
+    everywhere = range(len(cards) // LIST_LENGTH + 1)
+    faults = sum(_faults(chosen, scenarios) for chosen in lists_of(everywhere))
+    for one, other in rng.integers(len(begun), len(cards), (_SWAPS, 2)).tolist():
+        if faults == 0:
+            return lists_of(everywhere)
+        concerned = {one // LIST_LENGTH, other // LIST_LENGTH}
+        before = sum(_faults(chosen, scenarios) for chosen in lists_of(concerned))
+        cards[one], cards[other] = cards[other], cards[one]
+        after = sum(_faults(chosen, scenarios) for chosen in lists_of(concerned))
+        if after > before:
+            cards[one], cards[other] = cards[other], cards[one]
+        else:
+            faults += after - before
+    raise DealingFailed(
+        f"expected a pool from which lists of {LIST_LENGTH} can be drawn with each goal 1-3 and "
+        f"each maze 1-4 times; the {len(scenarios)} scenarios given allow none"
     )
 
 
-def _uses(chosen: Sequence[Scenario], scenarios: Scenarios) -> Iterator[tuple[Counter[str], range]]:
-    """How often each goal and each maze is among the chosen, and how often it may be."""
-    for key, uses in (("goal", GOAL_USES), ("maze", MAZE_USES)):
-        counts = Counter(dict.fromkeys((getattr(s, key) for s in scenarios), 0))
-        counts.update(getattr(s, key) for s in chosen)
-        yield counts, uses
+def _faults(chosen: Sequence[Scenario], scenarios: Scenarios) -> int:
+    """How far a list is from balance: repetitions, too many uses, uses without room."""
+    room = LIST_LENGTH - len(chosen)
+    faults = len(chosen) - len(set(chosen))
+    # A list begun must have room for all that is missing one by one: the card that brings both
+    # a missing goal and a missing maze may not exist.
+    missing = 0
+    for key, most in (("goal", MOST_PER_GOAL), ("maze", MOST_PER_MAZE)):
+        used = Counter(getattr(scenario, key) for scenario in chosen)
+        missing += len({getattr(scenario, key) for scenario in scenarios} - set(used))
+        faults += sum(max(0, uses - most) for uses in used.values())
+    return faults + max(0, missing - room)

@@ -29,17 +29,23 @@ def serve(
 
     Example: GOALGUESS_DATABASE_URL=sqlite:///study.sqlite goalguess serve --port 8000
     """
+    import socket
+
     import uvicorn
 
-    from app.main import create_app
+    from app.main import create_app, open_database
     from app.settings import load_settings
+    from app.study import load_study
 
     settings = load_settings()
-    app = create_app(settings)
-    server = uvicorn.Server(uvicorn.Config(app, host=host, port=port, log_level="warning"))
-    typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
-    typer.echo(f"The study is at http://{host}:{port}/")
-    server.run()
+    # What can go wrong is tried first, so that it is told in one line: the file and the port.
+    open_database(settings, load_study(settings)).close()
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.create_server((host, port), family=family) as listener:
+        server = uvicorn.Server(uvicorn.Config(create_app(settings), log_level="warning"))
+        typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
+        typer.echo(f"The study is at http://{host}:{listener.getsockname()[1]}/")
+        server.run(sockets=[listener])
 
 
 @commands.command()

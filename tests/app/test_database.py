@@ -43,7 +43,7 @@ def hold(database):
 
 
 def test_a_write_returns_what_its_function_returned(bare):
-    assert asyncio.run(bare.write(lambda connection: 41 + 1)) == 42
+    assert asyncio.run(bare.write(lambda _connection: 41 + 1)) == 42
 
 
 def test_a_finished_write_is_seen_by_another_connection(bare, settings):
@@ -60,7 +60,7 @@ def test_a_write_is_not_acknowledged_before_its_commit(bare):
     future.add_done_callback(lambda _future: seen.append(list(committed)))
     future.result()
     assert seen in ([[True]], [])
-    bare.submit(lambda connection: None).result()
+    bare.submit(lambda _connection: None).result()
     assert seen == [[True]]
 
 

@@ -1,0 +1,292 @@
+"""The trials: what is stored, what is refused, and that nothing can be sent twice to effect."""
+
+import json
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from analysis import correct, score
+from app import answering, enrolment
+from app.enrolment import Link
+from app.errors import AppError
+from app.schemas import Answered, Played, Stopped
+from app.steps import Step
+from app.tables import events, participants, places, trials
+from tests import messages
+
+
+def first_trial(browser):
+    return browser.trial()["trial"]
+
+
+def test_the_first_trial_is_ready_before_it_is_played(browser):
+    browser.reach_trials()
+    trial = first_trial(browser)
+    assert (trial["index"], trial["of"], trial["phase"]) == (1, 10, "ready")
+
+
+def test_a_trial_goes_from_ready_through_moving_and_asking_to_the_next(browser):
+    browser.reach_trials()
+    browser.play(1)
+    assert first_trial(browser)["phase"] == "moving"
+    browser.stop(1, 4321.5)
+    trial = first_trial(browser)
+    assert (trial["phase"], trial["stop_time_ms"]) == ("asking", 4321.5)
+    reply = browser.answer(1).json()
+    assert (reply["trial"]["index"], reply["trial"]["phase"]) == (2, "ready")
+    assert reply["repeated"] is False
+
+
+def test_all_facts_of_a_trial_are_stored(browser, rows):
+    browser.reach_trials()
+    browser.play(1, device={**messages.played()["device"], "reduced_motion": True})
+    browser.stop(
+        1, 4321.5, pauses=2, paused_ms=900, focus_losses=1, frames_dropped=3, reduced_motion=True
+    )
+    browser.answer(1, "C", confidence=6)
+    (row,) = rows(trials)
+    assert (row.stop_time_ms, row.reached_end, row.guess, row.confidence) == (4321.5, False, "C", 6)
+    assert (row.pauses, row.paused_ms, row.focus_losses, row.frames_dropped) == (2, 900, 1, 3)
+    assert row.reduced_motion is True
+    assert (row.guess_latency_ms, row.confidence_latency_ms) == (1200.5, 800)
+    assert row.played_at <= row.stopped_at <= row.answered_at
+    assert (row.step_ms, row.lead_in_ms) == (1000, 1500)
+
+
+def test_the_device_is_stored_with_the_first_frame_played(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    (participant,) = rows(participants)
+    assert (participant.viewport_width, participant.viewport_height) == (1280, 800)
+    assert (participant.refresh_rate_hz, participant.pointer_type) == (60.0, "mouse")
+
+
+def test_the_stimuli_shown_are_those_of_the_place_dealt(browser, rows, study):
+    browser.take_part()
+    place = next(row for row in rows(places) if row.participant_id)
+    shown = [study.pool.stimuli[row.stimulus] for row in rows(trials)]
+    assert [one.scenario for one in shown] == place.scenarios
+    assert {one.condition for one in shown} == {place.condition}
+
+
+def test_the_last_answer_completes_the_study(browser, rows):
+    browser.reach_trials()
+    for index in range(1, 11):
+        reply = browser.finish_trial(index).json()
+    assert reply == {"repeated": False, "trial": None, "next": "/end"}
+    assert rows(participants)[0].step == "completed"
+    assert rows(participants)[0].finished_at is not None
+
+
+def test_the_code_is_given_only_when_every_answer_is_there(browser):
+    browser.reach_trials()
+    for index in range(1, 10):
+        browser.finish_trial(index)
+    assert "DONE1" not in browser.get("/end").text
+    browser.finish_trial(10)
+    assert "DONE1" in browser.get("/end").text
+
+
+def test_the_score_on_the_last_page_is_that_of_the_measures(browser, rows, study):
+    browser.reach_trials()
+    for index in range(1, 11):
+        browser.finish_trial(index, guess="ABCDEF"[index % 6], stop_time_ms=1000 * index)
+    total = 0.0
+    for row in rows(trials):
+        stimulus = study.pool.stimuli[row.stimulus]
+        right = correct(row.guess, stimulus.goal)
+        total += score(right, row.stop_time_ms / 1000, stimulus.steps)
+    assert f"{total:.1f} <small>of 100 points" in browser.get("/end").text
+
+
+@pytest.mark.parametrize("stop_time_ms", [-1, 1e9, float("nan")])
+def test_a_stop_outside_the_motion_is_refused(browser, rows, stop_time_ms):
+    browser.reach_trials()
+    browser.play(1)
+    body = messages.stopped(0)
+    text = json.dumps({**body, "stop_time_ms": stop_time_ms})
+    reply = browser.client.post(
+        "/api/trials/1/stopped", content=text, headers={"origin": "http://study.test"}
+    )
+    assert reply.status_code == 422
+    assert "stop_time_ms" in reply.json()["error"]["message"]
+    assert rows(trials)[0].stopped_at is None
+
+
+def test_the_length_itself_is_a_possible_stop_and_a_millisecond_more_is_not(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    length = rows(trials)[0].length_ms
+    assert browser.stop(1, length + 1).status_code == 422
+    assert browser.stop(1, length, reached_end=True).status_code == 200
+
+
+def test_the_end_can_only_be_reached_at_the_length(browser):
+    browser.reach_trials()
+    browser.play(1)
+    assert browser.stop(1, 3000, reached_end=True).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"guess": "G"}, "guess"),
+        ({"guess": "a"}, "guess"),
+        ({"confidence": 0}, "confidence"),
+        ({"confidence": 8}, "confidence"),
+        ({"confidence": 4.5}, "confidence"),
+        ({"guess_latency_ms": -1}, "guess_latency_ms"),
+        ({"key": "short"}, "key"),
+        ({"goal": "A"}, "goal"),
+        ({"events": [{"type": "hacked", "client_time_ms": 1}]}, "events.0.type"),
+    ],
+)
+def test_an_impossible_answer_is_refused_by_the_name_of_its_field(browser, rows, changes, field):
+    browser.reach_trials()
+    browser.play(1)
+    browser.stop(1, 3000)
+    reply = browser.answer(1, **changes)
+    assert reply.status_code == 422
+    assert reply.json()["error"]["message"].startswith(field)
+    assert rows(trials)[0].answered_at is None
+
+
+def test_nothing_can_be_sent_ahead_of_its_turn(browser, rows):
+    browser.reach_trials()
+    assert browser.stop(1, 100).json()["error"]["code"] == "wrong_step"
+    assert browser.answer(1).json()["error"]["code"] == "wrong_step"
+    assert browser.play(2).json()["error"]["code"] == "wrong_step"
+    assert rows(trials) == []
+
+
+def test_a_second_stop_leaves_the_first_as_it_was(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    browser.stop(1, 3000)
+    reply = browser.stop(1, 9000).json()
+    assert reply["repeated"] is True
+    assert reply["trial"]["stop_time_ms"] == 3000
+    assert rows(trials)[0].stop_time_ms == 3000
+
+
+def test_a_second_answer_leaves_the_first_and_gets_the_trial_that_is_due(browser, rows):
+    browser.reach_trials()
+    browser.finish_trial(1, guess="B")
+    reply = browser.answer(1, guess="C").json()
+    assert (reply["repeated"], reply["trial"]["index"]) == (True, 2)
+    assert rows(trials)[0].guess == "B"
+
+
+def test_a_stale_answer_after_the_end_is_told_of_the_end(browser, rows):
+    browser.take_part()
+    assert browser.answer(10, guess="C").json() == {"repeated": True, "trial": None, "next": "/end"}
+    assert rows(trials)[9].guess == "A"
+
+
+def test_a_message_delivered_twice_is_logged_once(browser, rows):
+    browser.reach_trials()
+    body = messages.played()
+    for _ in range(2):
+        browser.send("/api/trials/1/played", body)
+    logged = [row.type for row in rows(events) if row.trial_index == 1]
+    assert logged == ["shown", "played"]
+
+
+def test_events_carry_times_stimulus_and_details(browser, rows):
+    browser.reach_trials()
+    browser.play(1, events=[messages.event("played", 1234.5, frame=7)])
+    row = rows(events)[-1]
+    assert (row.type, row.client_time_ms, row.details) == ("played", 1234.5, {"frame": 7})
+    assert row.stimulus == rows(trials)[0].stimulus
+    assert row.server_time is not None
+
+
+def test_a_broken_off_trial_goes_on_where_it_was(browser):
+    browser.reach_trials()
+    browser.play(1)
+    gone = {"key": messages.key(), "trial_index": 1, "position_ms": 2500, "events": []}
+    assert browser.send("/api/events", gone).status_code == 200
+    assert first_trial(browser)["position_ms"] == 2500
+    browser.send("/api/events", {**gone, "key": messages.key(), "position_ms": 1000})
+    assert first_trial(browser)["position_ms"] == 2500
+
+
+def test_what_was_seen_never_exceeds_the_motion(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    gone = {"key": messages.key(), "trial_index": 1, "position_ms": 1e8, "events": []}
+    browser.send("/api/events", gone)
+    assert first_trial(browser)["position_ms"] == rows(trials)[0].length_ms
+
+
+def test_the_trials_are_closed_to_whoever_is_not_there_yet(browser):
+    browser.reach_practice()
+    assert browser.play(1).json()["error"]["code"] == "wrong_step"
+
+
+def test_without_a_session_nothing_is_taken(browser):
+    reply = browser.play(1)
+    assert (reply.status_code, reply.json()["error"]["code"]) == (401, "no_session")
+
+
+MOMENTS = {
+    "played": (Played, answering.played, lambda _tab: messages.played()),
+    "stopped": (Stopped, answering.stopped, lambda tab: messages.stopped(1000.0 * tab)),
+    "answered": (Answered, answering.answered, lambda tab: messages.answered("ABC"[tab])),
+}
+DELIVERIES = st.lists(
+    st.tuples(st.integers(1, 3), st.sampled_from(sorted(MOMENTS)), st.integers(0, 2)),
+    min_size=1,
+    max_size=40,
+)
+
+
+@given(DELIVERIES)
+@settings(
+    max_examples=40,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+def test_answers_in_any_interleaving_of_three_tabs_are_stored_once_and_stay(
+    database, study, deliveries
+):
+    """Whatever arrives, in whatever order and how often: the first that was due is what stays."""
+
+    def arrive(connection):
+        token = enrolment.consent(connection, study, messages.key(), Link(), "test")
+        participant = enrolment.participant_of(connection, token)
+        enrolment.repository.change_participant(connection, participant.id, step=Step.TRIALS)
+        enrolment.deal(connection, study, participant)
+        return token, participant.id
+
+    token, participant_id = database.submit(arrive).result()
+    expected: dict[int, dict[str, int]] = {}
+    due = (1, "played")
+    order = ["played", "stopped", "answered"]
+    for index, moment, tab in deliveries:
+        model, happen, body = MOMENTS[moment]
+        message = model.model_validate(body(tab))
+        future = database.submit(lambda c, h=happen, i=index, m=message: h(c, study, token, i, m))
+        ahead = (index, order.index(moment)) > (due[0], order.index(due[1]))
+        if ahead:
+            with pytest.raises(AppError):
+                future.result()
+        elif (index, moment) == due:
+            assert future.result().repeated is False
+            expected.setdefault(index, {})[moment] = tab
+            due = (
+                (index + 1, "played")
+                if moment == "answered"
+                else (index, order[order.index(moment) + 1])
+            )
+        else:
+            assert future.result().repeated is True
+    stored = database.read_now(
+        lambda c: c.execute(trials.select().where(trials.c.participant_id == participant_id)).all()
+    )
+    assert [row.trial_index for row in stored] == sorted(expected)
+    for row in stored:
+        first = expected[row.trial_index]
+        assert row.stop_time_ms == (1000.0 * first["stopped"] if "stopped" in first else None)
+        assert row.guess == ("ABC"[first["answered"]] if "answered" in first else None)

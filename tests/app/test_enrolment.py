@@ -1,0 +1,311 @@
+"""Coming, going, dealing of places and withdrawal, through the routes and in the rows."""
+
+import re
+import sqlite3
+from datetime import timedelta
+
+import pytest
+from sqlalchemy import select, update
+from starlette.testclient import TestClient
+
+from app import repository
+from app.main import create_app, open_database
+from app.settings import Settings
+from app.tables import (
+    demographics,
+    events,
+    participants,
+    places,
+    recruits,
+    sessions,
+    tallies,
+    trials,
+)
+from tests import messages
+from tests.app.conftest import ORIGIN, Browser
+
+PROLIFIC = "?PROLIFIC_PID=p1&STUDY_ID=s1&SESSION_ID=x1"
+
+
+def location(response):
+    return response.headers["location"]
+
+
+def let_time_pass(client, minutes):
+    """Move all dealings into the past."""
+    then = repository.now() - timedelta(minutes=minutes)
+    database = client.app.state.services.database
+    database.submit(
+        lambda c: c.execute(
+            update(places).where(places.c.dealt_at.is_not(None)).values(dealt_at=then)
+        )
+    ).result()
+
+
+def test_opening_the_link_stores_nothing_before_consent(browser, rows):
+    browser.get("/" + PROLIFIC)
+    assert rows(participants) == rows(recruits) == rows(events) == []
+
+
+def test_no_consent_keeps_an_anonymous_count_and_nothing_else(browser, rows):
+    browser.get("/" + PROLIFIC)
+    reply = browser.post("/consent", {"decision": "no", "PROLIFIC_PID": "p1"})
+    assert location(reply) == "/no-consent"
+    assert browser.get("/no-consent").status_code == 200
+    assert [tuple(row) for row in rows(tallies)] == [("arrived, no consent", 1)]
+    assert rows(participants) == rows(recruits) == rows(events) == rows(sessions) == []
+
+
+def test_consent_makes_a_participant_with_the_hash_of_the_text_agreed_to(browser, rows, study):
+    assert location(browser.consent(PROLIFIC)) == "/about-you"
+    (participant,) = rows(participants)
+    assert participant.step == "about_you"
+    assert participant.consent_hash == study.consent_hash
+    assert participant.study_hash == study.hash
+    assert participant.consented_at is not None
+    (recruit,) = rows(recruits)
+    assert (recruit.recruiter_id, recruit.recruiter_study, recruit.recruiter_session) == (
+        "p1",
+        "s1",
+        "x1",
+    )
+
+
+def test_consent_sent_twice_makes_one_participant(browser, rows):
+    page = browser.get("/")
+
+    fields = dict(re.findall(r'name="(arrival)" value="(.*?)"', page.text))
+    for _ in range(2):
+        browser.post("/consent", {**fields, "decision": "yes"})
+    assert len(rows(participants)) == 1
+
+
+def test_the_same_recruiter_id_comes_back_to_where_it_was(browser, another_browser, rows):
+    browser.reach_practice(PROLIFIC)
+    assert location(another_browser().get("/" + PROLIFIC)) == "/practice"
+    assert len(rows(participants)) == 1
+
+
+def test_consenting_in_two_browsers_with_one_recruiter_id_makes_one_participant(
+    browser, another_browser, rows
+):
+    other = another_browser()
+    first, second = browser.get("/" + PROLIFIC), other.get("/" + PROLIFIC)
+    assert first.status_code == second.status_code == 200
+    browser.consent(PROLIFIC)
+    other.consent(PROLIFIC)
+    assert len(rows(participants)) == 1
+
+
+def test_the_link_moves_the_session_to_the_newest_browser_and_the_older_is_told(
+    browser, another_browser
+):
+    browser.reach_trials(PROLIFIC)
+    newer = another_browser()
+    newer.get("/" + PROLIFIC)
+    assert newer.get("/trial").status_code == 200
+    told = browser.get("/trial")
+    assert told.status_code == 409
+    assert "another browser" in told.text
+    assert browser.play(1).json()["error"]["code"] == "moved"
+    assert newer.play(1).status_code == 200
+
+
+def test_opening_the_link_again_in_the_same_browser_begins_no_new_session(browser, rows):
+    browser.reach_practice(PROLIFIC)
+    assert location(browser.get("/" + PROLIFIC)) == "/practice"
+    assert len(rows(sessions)) == 1
+
+
+def test_an_anonymous_participant_comes_back_by_the_browser(browser, another_browser):
+    browser.reach_practice()
+    assert location(browser.get("/")) == "/practice"
+    assert another_browser().get("/").status_code == 200
+
+
+def test_an_impossible_recruiter_id_is_refused_in_words(browser):
+    reply = browser.get("/?PROLIFIC_PID=" + "x" * 101)
+    assert reply.status_code == 422
+    assert "PROLIFIC_PID: expected at most 100" in reply.text
+
+
+def test_no_new_participant_begins_in_a_closed_study(settings):
+    closed = settings.model_copy(update={"study_open": False})
+    with TestClient(create_app(closed), base_url=ORIGIN) as client:
+        assert Browser(client).consent().status_code == 409
+
+
+def test_answers_about_oneself_are_stored_and_can_be_withheld(browser, rows):
+    browser.consent()
+    form = {**messages.ABOUT_ME, "gender": "prefer not to say", "nationality": ""}
+    form |= {"age": "", "age_withheld": "yes", "nationality_withheld": "yes"}
+    assert location(browser.post("/about-you", form)) == "/instructions"
+    (row,) = rows(demographics)
+    assert (row.age, row.gender, row.nationality) == (
+        None,
+        "prefer not to say",
+        "prefer not to say",
+    )
+    assert row.education == "master's degree"
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "message"),
+    [
+        ("age", "twelve", "whole number from 18 to 120"),
+        ("age", "12", "whole number from 18 to 120"),
+        ("age", "", "prefer not to say"),
+        ("gender", "robot", "choose one of the answers shown"),
+        ("nationality", "x" * 61, "at most 60 characters"),
+        ("occupation", "", "prefer not to say"),
+    ],
+)
+def test_an_impossible_answer_is_shown_again_with_what_was_expected(
+    browser, rows, field, value, message
+):
+    browser.consent()
+    reply = browser.post("/about-you", {**messages.ABOUT_ME, field: value})
+    assert reply.status_code == 422
+    assert message in reply.text
+    assert rows(demographics) == []
+    assert rows(participants)[0].step == "about_you"
+
+
+def test_answers_sent_twice_are_kept_once(browser, rows):
+    browser.consent()
+    browser.post("/about-you", messages.ABOUT_ME)
+    again = browser.post("/about-you", {**messages.ABOUT_ME, "age": "99"})
+    assert location(again) == "/instructions"
+    assert [row.age for row in rows(demographics)] == [31]
+
+
+def test_the_control_question_is_asked_twice_then_screens_out(browser, rows):
+    browser.reach_practice()
+    assert location(browser.post("/practice", messages.WRONG_ANSWER)) == "/practice"
+    assert "one more try" in browser.get("/practice").text
+    assert location(browser.post("/practice", messages.WRONG_ANSWER)) == "/end"
+    assert browser.get("/end").status_code == 200
+    (participant,) = rows(participants)
+    assert (participant.step, participant.control_tries) == ("screened_out", 2)
+    assert rows(places) == []
+
+
+def test_the_second_try_may_pass(browser, rows):
+    browser.reach_practice()
+    browser.post("/practice", messages.WRONG_ANSWER)
+    assert location(browser.post("/practice", messages.RIGHT_ANSWER)) == "/trial"
+    assert rows(participants)[0].step == "trials"
+
+
+def test_a_place_is_dealt_only_when_the_control_question_is_passed(browser, rows):
+    browser.reach_practice()
+    assert rows(places) == []
+    browser.post("/practice", messages.RIGHT_ANSWER)
+    assert [row.participant_id for row in rows(places)] == [1, None, None, None]
+
+
+def test_a_block_of_four_arrivals_holds_both_conditions_twice(another_browser, rows):
+    for _ in range(4):
+        another_browser().reach_trials()
+    dealt = [row.condition for row in rows(places) if row.participant_id]
+    assert sorted(dealt) == ["optimal", "optimal", "polmdp", "polmdp"]
+
+
+def test_pilots_are_dealt_from_streams_of_their_own(browser, another_browser, rows):
+    browser.reach_trials()
+    another_browser().reach_trials("?preview=1")
+    another_browser().reach_trials("?simulated=1")
+    assert {row.stream for row in rows(places)} == {"participant", "preview", "simulated"}
+    assert [row.number for row in rows(places) if row.participant_id] == [0, 0, 0]
+
+
+def test_a_place_never_played_is_given_back_and_dealt_again_first(
+    client, browser, another_browser, rows
+):
+    browser.reach_trials()
+    let_time_pass(client, 31)
+    next_one = another_browser()
+    next_one.reach_trials()
+    assert (rows(places)[0].number, rows(places)[0].participant_id) == (0, 2)
+    assert browser.play(1).json()["error"]["code"] == "place_returned"
+    assert browser.get("/trial").status_code == 200
+    assert [row.participant_id for row in rows(places)][:2] == [2, 1]
+    assert browser.play(1).status_code == 200
+
+
+def test_a_place_is_kept_from_the_first_frame_played(client, browser, another_browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    let_time_pass(client, 10_000)
+    another_browser().reach_trials()
+    assert [row.participant_id for row in rows(places)][:2] == [1, 2]
+    assert browser.stop(1, 4000).status_code == 200
+
+
+def test_a_place_is_not_given_back_within_the_set_time(client, browser, another_browser, rows):
+    browser.reach_trials()
+    let_time_pass(client, 29)
+    another_browser().reach_trials()
+    assert [row.participant_id for row in rows(places)][:2] == [1, 2]
+
+
+def test_whoever_cannot_go_on_ends_as_failed_and_gives_the_place_back(browser, rows):
+    browser.reach_trials()
+    assert location(browser.post("/failed")) == "/end"
+    assert rows(participants)[0].step == "failed"
+    assert all(row.participant_id is None for row in rows(places))
+
+
+@pytest.mark.parametrize("reach", ["consent", "reach_practice", "reach_trials", "take_part"])
+def test_withdrawal_at_any_step_leaves_only_a_tombstone(browser, rows, reach):
+    getattr(browser, reach)(PROLIFIC)
+    assert browser.get("/withdraw").status_code == 200
+    assert location(browser.post("/withdraw")) == "/withdrawn"
+    assert browser.get("/withdrawn").status_code == 200
+    for table in (trials, events, demographics, recruits, sessions):
+        assert rows(table) == []
+    (tombstone,) = rows(participants)
+    assert tombstone.step == "withdrawn"
+    personal = ("arrival", "user_agent", "consented_at", "viewport_width", "pointer_type")
+    assert all(getattr(tombstone, name) is None for name in personal)
+
+
+def test_the_browser_is_told_to_forget_a_participant_who_withdrew(browser):
+    browser.consent()
+    reply = browser.post("/withdraw")
+    assert reply.headers["clear-site-data"] == '"cookies", "storage"'
+
+
+def test_the_condition_of_a_played_place_stays_known_after_withdrawal(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    browser.post("/withdraw")
+    assert rows(places)[0].participant_id == 1
+
+
+def test_a_restored_backup_drops_those_who_withdrew(browser, client, settings, tmp_path):
+    browser.take_part(PROLIFIC)
+    backup = tmp_path / "backup.sqlite"
+    with sqlite3.connect(settings.database_file) as source, sqlite3.connect(backup) as target:
+        source.backup(target)
+    source.close()
+    target.close()
+    browser.post("/withdraw")
+    restored = Settings(database_url=f"sqlite:///{backup}", withdrawals=settings.withdrawals_file)
+    reopened = open_database(restored, client.app.state.services.study)
+    try:
+        left = reopened.read_now(lambda c: c.execute(select(trials)).all())
+        steps = reopened.read_now(lambda c: c.scalars(select(participants.c.step)).all())
+    finally:
+        reopened.close()
+    assert left == []
+    assert steps == ["withdrawn"]
+
+
+def test_withdrawing_ends_with_the_study(browser, settings):
+    browser.consent()
+    token = browser.client.cookies["goalguess_session"]
+    closed = settings.model_copy(update={"study_open": False})
+    with TestClient(create_app(closed), base_url=ORIGIN) as client:
+        client.cookies.set("goalguess_session", token)
+        assert Browser(client).post("/withdraw").status_code == 409
