@@ -14,7 +14,7 @@ from policies.mdp import Array
 from policies.polmdp import LegiblePlan, Parameters, plan_legible
 from policies.rollout import draw_rollout
 
-MAZES = ("first", "second", "third", "fourth")
+MAZES = ("nave", "pinwheel", "third", "fourth")
 PRACTICE_MAZE = "practice"
 PARAMETERS = Parameters(guard=True)
 SECOND_OPTIMAL = "optimal again"

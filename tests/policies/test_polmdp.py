@@ -163,7 +163,8 @@ class TestPlans:
     )
     def test_the_cost_formulation_arrives_from_everywhere(self, seed, variant, actions, how):
         maze = random_maze(6, 6, 3, np.random.default_rng(seed))
-        plan = plan_legible(maze, "A", Parameters(*how, "cost", variant, actions))
+        beta, gamma = how
+        plan = plan_legible(maze, "A", Parameters(beta, gamma, "cost", variant, actions))
         assert plan.certificate.arrives.all()
 
     @settings(max_examples=25, deadline=None)
@@ -176,7 +177,9 @@ class TestPlans:
     )
     def test_the_guard_certifies_always(self, seed, formulation, variant, actions, how):
         maze = random_maze(6, 7, 3, np.random.default_rng(seed))
-        plan = plan_legible(maze, "A", Parameters(*how, formulation, variant, actions, guard=True))
+        beta, gamma = how
+        parameters = Parameters(beta, gamma, formulation, variant, actions, guard=True)
+        plan = plan_legible(maze, "A", parameters)
         assert plan.certificate.certified
 
     def test_the_guard_changes_only_what_it_marks(self):
