@@ -35,13 +35,20 @@ MANIFEST = json.loads(
 )
 
 
+@pytest.fixture(scope="module")
+def built():
+    """The files that the committed seed builds."""
+    return build(2209)
+
+
 class TestScenes:
     def test_walls_are_merged_into_straight_lines(self):
-        rows = ("+---+---+", "| A | B |", "+   +   +", "| . | . |", "+   +---+", "| .   . |")
-        across = [[0, 0, 2, 0], [1, 2, 2, 2], [0, 3, 2, 3]]
-        down = [[0, 0, 0, 3], [1, 0, 1, 2], [2, 0, 2, 3]]
-        assert scene(parse_maze("\n".join([*rows, rows[0]]))) == {
-            "rows": 3,
+        lid, hall = "+---+---+", "+   +   +"
+        lines = [lid, "| A | B |", hall, "| . | . |", hall, "| .   . |", "+   +---+", "| .   . |"]
+        across = [[0, 0, 2, 0], [1, 3, 2, 3], [0, 4, 2, 4]]
+        down = [[0, 0, 0, 4], [1, 0, 1, 2], [2, 0, 2, 4]]
+        assert scene(parse_maze("\n".join([*lines, lid]))) == {
+            "rows": 4,
             "cols": 2,
             "walls": across + down,
             "areas": {"A": 0, "B": 1},
@@ -81,26 +88,19 @@ class TestMazes:
 
 
 class TestBuilding:
-    @pytest.fixture(scope="class")
-    def built(self):
-        return build(2209)
-
     def test_gives_the_committed_bytes(self, built):
         folder = files("policies").joinpath("stimuli")
         for name, text in built.items():
             assert folder.joinpath(name).read_bytes() == text.encode("utf-8")
 
-    def test_another_seed_gives_another_pool(self, built):
-        other = json.loads(build(1)["pool.json"])
+    def test_another_seed_gives_another_pool_and_says_so_on_the_way(self, built):
+        said: list[str] = []
+        other = json.loads(build(1, progress=said.append)["pool.json"])
+        assert len(said) == len(MAZES)
         pool = json.loads(built["pool.json"])
         assert other["scenes"] == pool["scenes"]
         assert other["scenarios"] != pool["scenarios"]
         assert not {s["id"] for s in other["stimuli"]} & {s["id"] for s in pool["stimuli"]}
-
-    def test_says_what_it_is_doing(self):
-        said: list[str] = []
-        build(2209, progress=said.append)
-        assert len(said) == len(MAZES)
 
     def test_what_passes_is_what_keeps_the_rule(self):
         planner = Planner(package_mazes(), 3)

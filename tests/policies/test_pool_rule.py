@@ -112,9 +112,9 @@ class TestChoice:
 
     def test_takes_the_rare_where_it_is_needed_for_balance(self):
         common = [c for c in MANY if c.goal != "C"]
-        rare = [c for c in MANY if c.goal == "C" and c.start < 7]
+        rare = [c for c in MANY if c.goal == "C" and c.start < 9]
         chosen = choose([*common, *rare], TWO, seed=1)
-        assert set(rare) <= set(chosen)
+        assert sum(c.goal == "C" for c in chosen) >= 12
 
     def test_says_when_the_mazes_do_not_give_enough(self):
         with pytest.raises(StimulusError, match="mazes need another design"):
