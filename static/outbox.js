@@ -1,0 +1,126 @@
+// An ordered outbox in the browser's storage: what goes in is delivered once, in order, however
+// often the network fails or the page is loaded again.
+
+import { patiently, request } from "./api.js";
+import { read, wallClock, write } from "./storage.js";
+
+const LATE_MS = 3000; // without an answer for so long, the participant is told
+
+export class Outbox {
+  #name;
+  #on;
+  #queue;
+  #events;
+  #waiting = new Map(); // key of a message -> who in this page waits for its reply
+  #drained = [];
+  #busy = false;
+  #late = false;
+  #closed = false;
+
+  /** `on`: {late(), saved() after late, refused(error): the server will not take the first message}. */
+  constructor(name, on) {
+    this.#name = name;
+    this.#on = on;
+    const kept = read(name);
+    this.#queue = kept?.queue ?? [];
+    this.#events = kept?.events ?? [];
+  }
+
+  /** Note an event; it travels with the next message. */
+  log(type, details = {}, time = undefined) {
+    this.#events.push({ type, client_time_ms: wallClock(time), details });
+    this.#keep();
+  }
+
+  /** Queue a message; resolves with the server's reply once it has it. */
+  send(path, body) {
+    const { key } = this.#add(path, body);
+    const reply = new Promise((resolve) => this.#waiting.set(key, resolve));
+    this.deliver();
+    return reply;
+  }
+
+  /** The page is going: queue the events not yet told, and send them with its last breath. */
+  sendLast(path, body) {
+    if (this.#closed || !this.#events.length) return;
+    const message = this.#add(path, body);
+    if (this.#queue.length === 1) request(message.path, message.body).catch(() => {});
+  }
+
+  /** Resolves when everything queued is delivered, also what was queued before a reload. */
+  flush() {
+    const drained = new Promise((resolve) => this.#drained.push(resolve));
+    this.deliver();
+    return drained;
+  }
+
+  /** Forget what is queued: the server has moved on and will never take it. */
+  drop() {
+    this.#queue = [];
+    this.#keep();
+  }
+
+  /** Another tab speaks for this participant from now on. */
+  close() {
+    this.#closed = true;
+  }
+
+  /** Work through the queue; called again after a refusal, it tries again. */
+  async deliver() {
+    if (this.#busy) return;
+    this.#busy = true;
+    const timer = setTimeout(() => this.#tellLate(), LATE_MS);
+    try {
+      while (this.#queue.length && !this.#closed) await this.#deliverFirst();
+    } catch (refused) {
+      if (!this.#closed) this.#on.refused(refused);
+      return;
+    } finally {
+      clearTimeout(timer);
+      this.#busy = false;
+    }
+    if (this.#closed) return;
+    if (this.#late) this.#on.saved();
+    this.#late = false;
+    for (const resolve of this.#drained.splice(0)) resolve();
+  }
+
+  async #deliverFirst() {
+    const { key, path, body } = this.#queue[0];
+    const reply = await patiently(path, body, (attempt, status) =>
+      this.log("retried", { path, attempt, status }),
+    );
+    if (this.#closed) return;
+    this.#queue.shift();
+    this.#keep();
+    this.#waiting.get(key)?.(reply);
+    this.#waiting.delete(key);
+  }
+
+  #tellLate() {
+    if (this.#closed) return;
+    this.#late = true;
+    this.#on.late();
+  }
+
+  #add(path, body) {
+    const key = uuid();
+    const message = { key, path, body: { key, ...body, events: this.#events } };
+    this.#events = [];
+    this.#queue.push(message);
+    this.#keep();
+    return message;
+  }
+
+  #keep() {
+    if (!this.#closed) write(this.#name, { queue: this.#queue, events: this.#events });
+  }
+}
+
+function uuid() {
+  const bytes = crypto.getRandomValues(new Uint8Array(16)); // randomUUID() needs https
+  bytes[6] = (bytes[6] & 0x0f) | 0x40;
+  bytes[8] = (bytes[8] & 0x3f) | 0x80;
+  const hex = [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+  return hex.replace(/^(.{8})(.{4})(.{4})(.{4})(.{12})$/, "$1-$2-$3-$4-$5");
+}

@@ -1,0 +1,84 @@
+// Draws the robot: a body with a face that looks where it goes. It stands at the origin, a cell is 1.
+
+const TURN = 0.16; // share of a step in which the face turns
+
+/** Where the face looks, as [dx, dy]: it turns at the beginning of a step, never before. */
+export function look(before, now, share) {
+  const turned = Math.min(1, share / TURN);
+  const eased = turned * turned * (3 - 2 * turned);
+  return [before[0] + (now[0] - before[0]) * eased, before[1] + (now[1] - before[1]) * eased];
+}
+
+/** `pose`: {look: [dx, dy], standing: share of a failed step or null, hop: 0..1}. */
+export function drawRobot(context, colours, pose) {
+  const [dx, dy] = pose.look;
+  const still = pose.standing !== null;
+  const breath = still ? Math.sin(Math.PI * pose.standing) : 0;
+
+  context.save();
+  context.translate(0, -0.05 * pose.hop);
+  if (still) drawPuffs(context, colours, pose.standing);
+  context.scale(1 + 0.07 * breath, 1 - 0.07 * breath);
+
+  drawNose(context, colours, dx, dy);
+  context.fillStyle = colours.robot;
+  context.strokeStyle = colours.robotEdge;
+  context.lineWidth = 0.05;
+  context.beginPath();
+  context.roundRect(-0.32, -0.32, 0.64, 0.64, 0.22);
+  context.stroke();
+  context.fill();
+  drawFace(context, colours, dx, dy, breath > 0.25);
+  context.restore();
+}
+
+function drawNose(context, colours, dx, dy) {
+  const size = Math.hypot(dx, dy);
+  if (size < 0.5) return;
+  context.save();
+  context.rotate(Math.atan2(dy, dx));
+  context.beginPath();
+  context.moveTo(0.28, -0.16);
+  context.quadraticCurveTo(0.44, -0.07, 0.44, 0);
+  context.quadraticCurveTo(0.44, 0.07, 0.28, 0.16);
+  context.closePath();
+  context.fillStyle = colours.robot;
+  context.strokeStyle = colours.robotEdge;
+  context.lineWidth = 0.05;
+  context.stroke();
+  context.fill();
+  context.restore();
+}
+
+function drawFace(context, colours, dx, dy, blinking) {
+  const x = 0.1 * dx;
+  const y = 0.1 * dy;
+  context.fillStyle = colours.robotFace;
+  context.beginPath();
+  context.roundRect(x - 0.21, y - 0.135, 0.42, 0.27, 0.13);
+  context.fill();
+  context.fillStyle = colours.robotEye;
+  for (const side of [-1, 1]) {
+    context.beginPath();
+    const eye = [x + side * 0.095 + 0.035 * dx, y + 0.035 * dy];
+    if (blinking) context.roundRect(eye[0] - 0.055, eye[1] - 0.015, 0.11, 0.035, 0.015);
+    else context.ellipse(eye[0], eye[1], 0.05, 0.066, 0, 0, 2 * Math.PI);
+    context.fill();
+  }
+}
+
+/** Two little clouds, alike on both sides: they say "it stands" and nothing about where it wanted. */
+function drawPuffs(context, colours, share) {
+  context.save();
+  context.globalAlpha = 0.9 * Math.sin(Math.PI * Math.min(1, share * 1.1));
+  context.fillStyle = colours.robotLight;
+  for (const side of [-1, 1]) {
+    for (const [far, size] of [[0.36, 0.065], [0.44, 0.045]]) {
+      context.beginPath();
+      const drift = far + 0.06 * share;
+      context.arc(side * drift, -0.24 - 0.16 * share * (far / 0.4), size, 0, 2 * Math.PI);
+      context.fill();
+    }
+  }
+  context.restore();
+}

@@ -1,0 +1,24 @@
+// What this browser keeps: JSON under a name, or nothing where the browser refuses to store.
+
+/** What is kept under a name, or null. */
+export function read(name) {
+  try {
+    return JSON.parse(localStorage.getItem(name));
+  } catch {
+    return null;
+  }
+}
+
+/** Keep a value under a name; without storage the study goes on from memory. */
+export function write(name, value) {
+  try {
+    localStorage.setItem(name, JSON.stringify(value));
+  } catch {
+    // Only a reload would lose what is not kept.
+  }
+}
+
+/** A time stamp of this page as whole milliseconds since 1970. */
+export function wallClock(time = performance.now()) {
+  return Math.round(performance.timeOrigin + time);
+}
