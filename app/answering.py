@@ -11,7 +11,7 @@ from sqlalchemy import Connection
 
 from analysis import correct, score
 from app import VERSION, repository
-from app.enrolment import participant_of
+from app.enrolment import admitted, hashed
 from app.errors import InvalidInput, PlaceReturned, WrongStep
 from app.repository import Record
 from app.schemas import Answered, Logged, Message, Played, Stopped
@@ -55,21 +55,27 @@ class TrialScore:
     score: float
 
 
-def standing(connection: Connection, study: Study, participant: Record) -> Standing:
-    """The trial a participant is at; PlaceReturned when they have no place (any more)."""
-    place = repository.place_of(connection, participant.id)
-    if place is None:
+def participant_at_trial(connection: Connection, token: str | None) -> Record:
+    """The participant of a session, with their place and the trial they played last."""
+    return admitted(repository.participant_at_trial(connection, hashed(token)))
+
+
+def standing(study: Study, participant: Record) -> Standing:
+    """The trial a `participant_at_trial` is at; PlaceReturned when they have no place."""
+    if participant.scenarios is None:
         raise PlaceReturned
-    last = repository.last_trial(connection, participant.id)
-    answered = last is not None and last.answered_at is not None
-    index = 1 if last is None else last.trial_index + answered
-    if index > study.trials:
-        raise WrongStep("All animations have been answered.")
-    stimulus = study.pool.stimulus(place.scenarios[index - 1], place.condition)
-    if last is None or answered:
-        return Standing(index, Phase.READY, stimulus, study.length_ms(stimulus))
-    phase = Phase.MOVING if last.stopped_at is None else Phase.ASKING
-    return Standing(index, phase, stimulus, last.length_ms, last.position_ms, last.stop_time_ms)
+    if participant.trial_index is None:
+        return _ready(study, participant, 1)
+    if participant.answered_at is not None:
+        return _ready(study, participant, participant.trial_index + 1)
+    return Standing(
+        index=participant.trial_index,
+        phase=Phase.MOVING if participant.stopped_at is None else Phase.ASKING,
+        stimulus=study.pool.stimuli[participant.stimulus],
+        length_ms=participant.length_ms,
+        position_ms=participant.position_ms,
+        stop_time_ms=participant.stop_time_ms,
+    )
 
 
 def played(
@@ -141,15 +147,14 @@ def answered(
 
 def logged(connection: Connection, token: str | None, message: Logged) -> None:
     """Events that no answer carries, and how far a trial that is broken off was seen."""
-    participant = participant_of(connection, token)
+    participant = participant_at_trial(connection, token)
     index = message.trial_index
-    last = repository.last_trial(connection, participant.id)
-    this = last if last is not None and last.trial_index == index else None
-    _log(connection, participant, index, this.stimulus if this else None, message)
-    if this and this.stopped_at is None and message.position_ms is not None:
-        seen = min(message.position_ms, this.length_ms)
-        if seen > this.position_ms:
-            repository.change_trial(connection, participant.id, index or 0, position_ms=seen)
+    this = index is not None and index == participant.trial_index
+    _log(connection, participant, index, participant.stimulus if this else None, message)
+    if index and this and participant.stopped_at is None and message.position_ms is not None:
+        seen = min(message.position_ms, participant.length_ms)
+        if seen > participant.position_ms:
+            repository.change_trial(connection, participant.id, index, position_ms=seen)
 
 
 def scores(connection: Connection, study: Study, participant: Record) -> list[TrialScore]:
@@ -174,6 +179,11 @@ def score_trial(study: Study, trial: Record) -> TrialScore:
     )
 
 
+def _ready(study: Study, participant: Record, index: int) -> Standing:
+    stimulus = study.pool.stimulus(participant.scenarios[index - 1], participant.condition)
+    return Standing(index, Phase.READY, stimulus, study.length_ms(stimulus))
+
+
 def _once(
     connection: Connection,
     study: Study,
@@ -184,12 +194,12 @@ def _once(
     happen: Callable[[Record, Standing], None],
 ) -> Reply:
     """Let something happen to a trial if it is due; a stale message gets what is stored."""
-    participant = participant_of(connection, token)
+    participant = participant_at_trial(connection, token)
     if participant.step == Step.COMPLETED:
         return Reply(repeated=True, done=True, standing=None)
     if participant.step != Step.TRIALS:
         raise WrongStep("The animations are not what comes next.")
-    at = standing(connection, study, participant)
+    at = standing(study, participant)
     order = list(Phase)
     if (index, order.index(due)) > (at.index, order.index(at.phase)):
         raise WrongStep(f"Expected trial {at.index} ({at.phase}), came {index} ({due}).")
@@ -203,7 +213,7 @@ def _once(
     return Reply(
         repeated=False,
         done=done,
-        standing=None if done else standing(connection, study, participant),
+        standing=None if done else _ready(study, participant, index + 1),
     )
 
 

@@ -95,13 +95,13 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
     try:
         with connection.begin():
             for work, done in group:
+                connection.exec_driver_sql("SAVEPOINT before_work")
                 try:
-                    with connection.begin_nested():
-                        result = work(connection)
+                    outcomes.append((done, work(connection), None))
                 except Exception as failure:
+                    connection.exec_driver_sql("ROLLBACK TO before_work")
                     outcomes.append((done, None, failure))
-                else:
-                    outcomes.append((done, result, None))
+                connection.exec_driver_sql("RELEASE before_work")
     except BaseException as failure:
         # SQLite keeps a transaction open whose COMMIT failed; SQLAlchemy takes it for ended.
         connection.connection.rollback()

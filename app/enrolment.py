@@ -73,19 +73,23 @@ def open_books(connection: Connection, study: Study) -> None:
     )
 
 
-def hashed(token: str) -> str:
-    """What is stored of a session's token."""
-    return sha256(token.encode()).hexdigest()
+def hashed(token: str | None) -> str:
+    """What is stored of a session's token; without one, what no session has."""
+    return sha256((token or "").encode()).hexdigest()
 
 
 def participant_of(connection: Connection, token: str | None) -> Record:
     """The participant whose session this is; NoSession, or Moved when a newer one exists."""
-    participant = token and repository.participant_in_session(connection, hashed(token))
-    if not participant:
+    return admitted(repository.participant_in_session(connection, hashed(token)))
+
+
+def admitted(found: Record | None) -> Record:
+    """What was found for a session's token, if it is a participant's current session."""
+    if found is None:
         raise NoSession
-    if not participant.current:
+    if not found.current:
         raise Moved
-    return participant
+    return found
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,7 @@ class Known:
 
 def find(connection: Connection, link: Link, token: str | None) -> Known | None:
     """Who opens a link, by the recruiter's id or, without one, by the browser's session."""
-    here = repository.participant_in_session(connection, hashed(token)) if token else None
+    here = repository.participant_in_session(connection, hashed(token))
     if not link.recruiter_id:
         if here and not here.current:
             raise Moved

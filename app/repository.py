@@ -1,10 +1,14 @@
-"""Every query. Functions take an open connection and plain values, and apply no rules."""
+"""Every query. Functions take an open connection and plain values, and apply no rules.
+
+Statements that run on every answer are built once: building one takes longer than running it.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
+from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import Connection, Row, delete, func, select, update
+from sqlalchemy import Connection, Row, Update, bindparam, delete, func, select, update
 from sqlalchemy.dialects.sqlite import insert
 
 from app.tables import (
@@ -74,13 +78,16 @@ def tally(connection: Connection, name: str) -> None:
 # --- participants and their sessions -----------------------------------------------------------
 
 
+_IN_SESSION = (
+    select(participants, sessions.c.current)
+    .join(sessions, sessions.c.participant_id == participants.c.id)
+    .where(sessions.c.token_hash == bindparam("token_hash"))
+)
+
+
 def participant_in_session(connection: Connection, token_hash: str) -> Record | None:
     """The participant of a session, with `current`: whether it is still the newest one."""
-    return connection.execute(
-        select(participants, sessions.c.current)
-        .join(sessions, sessions.c.participant_id == participants.c.id)
-        .where(sessions.c.token_hash == token_hash)
-    ).one_or_none()
+    return connection.execute(_IN_SESSION, {"token_hash": token_hash}).one_or_none()
 
 
 def participant_recruited(connection: Connection, recruiter_id: str) -> Record | None:
@@ -141,11 +148,16 @@ def begin_session(connection: Connection, participant_id: int, token_hash: str) 
     )
 
 
+@lru_cache
+def _changing_participant(*names: str) -> Update:
+    values: dict[str, Any] = {name: bindparam(f"new_{name}") for name in names}
+    return update(participants).where(participants.c.id == bindparam("of")).values(values)
+
+
 def change_participant(connection: Connection, participant_id: int, **values: Any) -> None:
     """Set columns of a participant."""
-    connection.execute(
-        update(participants).where(participants.c.id == participant_id).values(**values)
-    )
+    new = {f"new_{name}": value for name, value in values.items()}
+    connection.execute(_changing_participant(*values), {"of": participant_id, **new})
 
 
 def add_demographics(
@@ -167,11 +179,12 @@ def erase(connection: Connection, participant_id: int) -> None:
 # --- places ------------------------------------------------------------------------------------
 
 
+_PLACE_OF = select(places).where(places.c.participant_id == bindparam("participant_id"))
+
+
 def place_of(connection: Connection, participant_id: int) -> Record | None:
     """The place a participant has."""
-    return connection.execute(
-        select(places).where(places.c.participant_id == participant_id)
-    ).one_or_none()
+    return connection.execute(_PLACE_OF, {"participant_id": participant_id}).one_or_none()
 
 
 def free_place(connection: Connection, stream: str) -> Record | None:
@@ -241,14 +254,34 @@ def mark_place_played(connection: Connection, participant_id: int) -> None:
 # --- trials ------------------------------------------------------------------------------------
 
 
-def last_trial(connection: Connection, participant_id: int) -> Record | None:
-    """The trial that a participant played last."""
-    return connection.execute(
-        select(trials)
-        .where(trials.c.participant_id == participant_id)
-        .order_by(trials.c.trial_index.desc())
-        .limit(1)
-    ).one_or_none()
+_last = trials.alias("last")
+_AT_TRIAL = (
+    select(
+        participants,
+        sessions.c.current,
+        places.c.condition,
+        places.c.scenarios,
+        *(column for column in _last.c if column.name != "participant_id"),
+    )
+    .join(sessions, sessions.c.participant_id == participants.c.id)
+    .outerjoin(places, places.c.participant_id == participants.c.id)
+    .outerjoin(
+        _last,
+        (_last.c.participant_id == participants.c.id)
+        & (
+            _last.c.trial_index
+            == select(func.max(trials.c.trial_index))
+            .where(trials.c.participant_id == participants.c.id)
+            .scalar_subquery()
+        ),
+    )
+    .where(sessions.c.token_hash == bindparam("token_hash"))
+)
+
+
+def participant_at_trial(connection: Connection, token_hash: str) -> Record | None:
+    """As `participant_in_session`, with their place and the trial they played last, if any."""
+    return connection.execute(_AT_TRIAL, {"token_hash": token_hash}).one_or_none()
 
 
 def trials_of(connection: Connection, participant_id: int) -> Sequence[Record]:
@@ -260,39 +293,50 @@ def trials_of(connection: Connection, participant_id: int) -> Sequence[Record]:
     ).all()
 
 
+_COUNT_ANSWERS = (
+    select(func.count())
+    .select_from(trials)
+    .where(
+        trials.c.participant_id == bindparam("participant_id"), trials.c.answered_at.is_not(None)
+    )
+)
+
+
 def count_answers(connection: Connection, participant_id: int) -> int:
     """How many trials a participant has answered."""
-    return (
-        connection.scalar(
-            select(func.count())
-            .select_from(trials)
-            .where(trials.c.participant_id == participant_id, trials.c.answered_at.is_not(None))
-        )
-        or 0
-    )
+    return connection.scalar(_COUNT_ANSWERS, {"participant_id": participant_id}) or 0
+
+
+_ADD_TRIAL = insert(trials)
 
 
 def add_trial(connection: Connection, participant_id: int, **values: Any) -> None:
     """A trial whose first frame was played."""
-    connection.execute(insert(trials).values(participant_id=participant_id, **values))
+    connection.execute(_ADD_TRIAL, {"participant_id": participant_id, **values})
+
+
+@lru_cache
+def _changing_trial(*names: str) -> Update:
+    of_trial = (trials.c.participant_id == bindparam("of"), trials.c.trial_index == bindparam("at"))
+    return update(trials).where(*of_trial).values({n: bindparam(f"new_{n}") for n in names})
 
 
 def change_trial(connection: Connection, participant_id: int, index: int, **values: Any) -> None:
     """Add what became known of a trial."""
-    connection.execute(
-        update(trials)
-        .where(trials.c.participant_id == participant_id, trials.c.trial_index == index)
-        .values(**values)
-    )
+    new = {f"new_{name}": value for name, value in values.items()}
+    connection.execute(_changing_trial(*values), {"of": participant_id, "at": index, **new})
 
 
 # --- the log -----------------------------------------------------------------------------------
 
 
+_LOG = insert(events).on_conflict_do_nothing()
+
+
 def log(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
     """Append events; those of a message that was logged before are left out."""
     if rows:
-        connection.execute(insert(events).on_conflict_do_nothing(), list(rows))
+        connection.execute(_LOG, list(rows))
 
 
 # --- the export --------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from app import answering, enrolment
+from app import answering
 from app.answering import Reply, Standing
 from app.deps import PATHS, as_json, participant_at, services, token_of
 from app.errors import InvalidInput
@@ -37,10 +37,10 @@ async def trial(request: Request) -> Response:
     token, at = token_of(request), services(request)
 
     def find(connection: Connection) -> Standing | None:
-        participant = enrolment.participant_of(connection, token)
-        if participant.step in (Step.TRIALS,):
-            return answering.standing(connection, at.study, participant)
-        return None
+        participant = answering.participant_at_trial(connection, token)
+        if participant.step != Step.TRIALS:
+            return None
+        return answering.standing(at.study, participant)
 
     return as_json(_state(at.study, await at.database.read(find)))
 
