@@ -2,9 +2,10 @@
 // often the network fails or the page is loaded again.
 
 import { patiently, request } from "./api.js";
-import { read, wallClock, write } from "./storage.js";
+import { read, tenths, write } from "./storage.js";
 
 const LATE_MS = 3000; // without an answer for so long, the participant is told
+const MOST_EVENTS = 200; // in one message; the rest waits for the next
 
 export class Outbox {
   #name;
@@ -26,9 +27,9 @@ export class Outbox {
     this.#events = kept?.events ?? [];
   }
 
-  /** Note an event; it travels with the next message. */
-  log(type, details = {}, time = undefined) {
-    this.#events.push({ type, client_time_ms: wallClock(time), details });
+  /** Note an event at a time of this page's own clock; it travels with the next message. */
+  log(type, details = {}, time = performance.now()) {
+    this.#events.push({ type, client_time_ms: tenths(time), details });
     this.#keep();
   }
 
@@ -105,8 +106,7 @@ export class Outbox {
 
   #add(path, body) {
     const key = uuid();
-    const message = { key, path, body: { key, ...body, events: this.#events } };
-    this.#events = [];
+    const message = { key, path, body: { key, ...body, events: this.#events.splice(0, MOST_EVENTS) } };
     this.#queue.push(message);
     this.#keep();
     return message;

@@ -20,34 +20,25 @@ export function drawRobot(context, colours, pose) {
   if (still) drawPuffs(context, colours, pose.standing);
   context.scale(1 + 0.07 * breath, 1 - 0.07 * breath);
 
-  drawNose(context, colours, dx, dy);
+  const body = bodyOf(dx, dy);
   context.fillStyle = colours.robot;
   context.strokeStyle = colours.robotEdge;
-  context.lineWidth = 0.05;
-  context.beginPath();
-  context.roundRect(-0.32, -0.32, 0.64, 0.64, 0.22);
-  context.stroke();
-  context.fill();
+  context.lineWidth = 0.06;
+  context.stroke(body);
+  context.fill(body);
   drawFace(context, colours, dx, dy, breath > 0.25);
   context.restore();
 }
 
-function drawNose(context, colours, dx, dy) {
-  const size = Math.hypot(dx, dy);
-  if (size < 0.5) return;
-  context.save();
-  context.rotate(Math.atan2(dy, dx));
-  context.beginPath();
-  context.moveTo(0.28, -0.16);
-  context.quadraticCurveTo(0.44, -0.07, 0.44, 0);
-  context.quadraticCurveTo(0.44, 0.07, 0.28, 0.16);
-  context.closePath();
-  context.fillStyle = colours.robot;
-  context.strokeStyle = colours.robotEdge;
-  context.lineWidth = 0.05;
-  context.stroke();
-  context.fill();
-  context.restore();
+/** A round box, drawn out to a point in the direction it looks. */
+function bodyOf(dx, dy) {
+  const body = new Path2D();
+  body.roundRect(-0.31, -0.31, 0.62, 0.62, 0.22);
+  if (Math.hypot(dx, dy) > 0.5) {
+    const nose = new Path2D("M.22-.2C.33-.13.43-.06.43 0S.33.13.22.2z");
+    body.addPath(nose, new DOMMatrix().rotate((180 / Math.PI) * Math.atan2(dy, dx)));
+  }
+  return body;
 }
 
 function drawFace(context, colours, dx, dy, blinking) {

@@ -18,7 +18,7 @@ export function write(name, value) {
   }
 }
 
-/** A time stamp of this page as whole milliseconds since 1970. */
-export function wallClock(time = performance.now()) {
-  return Math.round(performance.timeOrigin + time);
+/** Milliseconds as they are sent and kept: to a tenth. */
+export function tenths(milliseconds) {
+  return Math.round(milliseconds * 10) / 10;
 }

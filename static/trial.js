@@ -4,7 +4,7 @@ import { patiently } from "./api.js";
 import { Outbox } from "./outbox.js";
 import { Player } from "./player.js";
 import { Questions } from "./questions.js";
-import { read, wallClock, write } from "./storage.js";
+import { read, tenths, write } from "./storage.js";
 import { Tabs } from "./tabs.js";
 
 const byId = (id) => document.getElementById(id);
@@ -61,7 +61,7 @@ function show(state) {
   trial = state.trial;
   byId("round-index").textContent = trial.index;
   byId("progress").value = trial.index - 1;
-  outbox.log("shown", { trial_index: trial.index, phase: trial.phase });
+  outbox.log("shown", { phase: trial.phase, page_opened_ms: Math.round(performance.timeOrigin) });
   const kept = read(REACHED);
   const mine = kept?.index === trial.index ? kept : null;
   focusLosses = mine?.focus_losses ?? 0;
@@ -95,7 +95,7 @@ function keepReached(time = performance.now()) {
     paused_ms: clock.pausedMs,
     frames_dropped: meter.dropped,
     focus_losses: focusLosses,
-    at: wallClock(time),
+    at: performance.timeOrigin + time,
   });
 }
 
@@ -182,10 +182,6 @@ function saving(text) {
 
 function say(text) {
   byId("said").textContent = text;
-}
-
-function tenths(milliseconds) {
-  return Math.round(milliseconds * 10) / 10;
 }
 
 document.addEventListener("visibilitychange", (event) => {
