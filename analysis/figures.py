@@ -165,6 +165,7 @@ def _bars(
             textcoords="offset points",
             ha="center",
             fontweight="bold",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
             annotation_clip=False,
         )
 

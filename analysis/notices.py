@@ -73,12 +73,12 @@ def _about_gaps(data: Dataset, block: PaperBlock) -> list[Notice]:
         ("confidence", block.confidence.test.n_missing),
     ):
         if missing:
-            text = f"{name.capitalize()}: missing in {missing} trials, left out of its numbers."
+            text = f"{name.capitalize()}: {missing} missing, left out of its numbers."
             found.append(Notice("missing_values", name, text))
     incomplete = sum(arm.incomplete for arm in block.sample.arms.values())
     if incomplete:
         text = (
-            f"{incomplete} participants are incomplete ({block.sample.incomplete_means}); "
+            f"Incomplete participants: {incomplete} ({block.sample.incomplete_means}); "
             "the trials they answered are analysed."
         )
         found.append(Notice("incomplete_participants", "participants", text))

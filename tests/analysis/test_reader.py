@@ -321,6 +321,12 @@ def test_whole_columns_give_what_the_definitions_give_row_by_row():
     assert points.to_list() == [pytest.approx(5.0), 0.0, None]
 
 
+def test_an_animation_without_length_counts_for_nothing():
+    nothing = pl.Series([0.0])
+    assert prediction_times_s(nothing, nothing, pl.Series([True])).to_list() == [None]
+    assert scores(pl.Series([True]), nothing, nothing).to_list() == [None]
+
+
 def test_a_participant_without_trials_is_no_problem(tmp_path):
     rows = six_participants()
     write_table(TRIALS, rows, tmp_path)

@@ -83,6 +83,7 @@ def test_an_empty_text_is_a_missing_value_in_every_format(tmp_path):
     row = participant_row("P1", None, nationality="")
     for path in write_table(PARTICIPANTS, [row], tmp_path):
         assert read_table(PARTICIPANTS, path)["nationality"].to_list() == [None]
+    assert pl.read_parquet(tmp_path / "participants.parquet")["nationality"].to_list() == [None]
 
 
 def test_text_that_looks_like_a_table_survives(tmp_path):
