@@ -1,0 +1,84 @@
+"""How a participant gets through the study: quickly up to the trials, and through one trial."""
+
+import re
+
+from playwright.sync_api import Locator, Page
+
+from tests import messages
+
+
+def reach_practice(page: Page) -> None:
+    """By plain requests, as the forms would send them."""
+    page.goto("/")
+    fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.content()))
+    _post(page, "/consent", {**fields, "decision": "yes"})
+    _post(page, "/about-you", messages.ABOUT_ME)
+    _post(page, "/instructions", {})
+
+
+def reach_trials(page: Page) -> None:
+    """To the first trial, opened and ready to be played."""
+    reach_practice(page)
+    _post(page, "/practice", messages.RIGHT_ANSWER)
+    page.goto("/trial")
+    ready(page)
+
+
+def _post(page: Page, path: str, form: dict[str, str]) -> None:
+    reply = page.request.post(path, form=dict(form), headers={"origin": page.evaluate("origin")})
+    assert reply.ok, f"{path}: {reply.status}"
+
+
+def phase(page: Page, name: str) -> Locator:
+    """Wait until the stage is in a phase and takes presses."""
+    stage = page.locator(f"#stage[data-phase={name}]:not(.settling)")
+    stage.wait_for()
+    return stage
+
+
+def ready(page: Page) -> None:
+    phase(page, "ready")
+
+
+def moved(page: Page, milliseconds: int) -> None:
+    """Wait until the robot has been in motion for so long, by what the page itself keeps."""
+    phase(page, "moving")
+    page.wait_for_function(
+        """milliseconds => {
+            const name = Object.keys(localStorage).find(name => name.endsWith(":reached"));
+            const reached = name && JSON.parse(localStorage[name]);
+            const index = Number(document.querySelector("#round-index").textContent);
+            return reached && reached.index === index && reached.position_ms >= milliseconds;
+        }""",
+        arg=milliseconds,
+    )
+
+
+def play(page: Page, milliseconds: int = 200) -> None:
+    """Press Play and watch for a while."""
+    ready(page)
+    page.click("#play")
+    moved(page, milliseconds)
+
+
+def stop(page: Page) -> None:
+    """Press Stop, as a mouse does: the press counts, not the release."""
+    page.locator("#play").hover()
+    page.mouse.down()
+    page.mouse.up()
+    phase(page, "stopped")
+
+
+def answer(page: Page, letter: str, degree: int) -> None:
+    """Choose an area and how sure, and go on."""
+    page.locator(f"input[name=guess][value={letter}]").check()
+    page.locator(f"input[name=confidence][value='{degree}']").check()
+    page.click("#next")
+
+
+def round_is(page: Page, index: int) -> None:
+    """Wait for a round, ready to be played."""
+    page.wait_for_function(
+        "index => document.querySelector('#round-index').textContent === String(index)", arg=index
+    )
+    ready(page)
