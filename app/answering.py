@@ -5,16 +5,16 @@ Each takes the connection of an open transaction; `database.write` commits it be
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 from sqlalchemy import Connection
 
 from analysis import correct, score
-from app import VERSION, repository
-from app.enrolment import admitted, hashed
+from app import repository
 from app.errors import InvalidInput, PlaceReturned, WrongStep
+from app.event_log import log_message
 from app.repository import Record
 from app.schemas import Answered, Logged, Message, Played, Stopped
+from app.sessions import admitted, hashed
 from app.steps import Happening, Phase, Step, advance
 from app.study import Study
 from policies import Stimulus
@@ -150,7 +150,7 @@ def logged(connection: Connection, token: str | None, message: Logged) -> None:
     participant = participant_at_trial(connection, token)
     index = message.trial_index
     this = index is not None and index == participant.trial_index
-    _log(connection, participant, index, participant.stimulus if this else None, message)
+    log_message(connection, participant, index, participant.stimulus if this else None, message)
     if index and this and participant.stopped_at is None and message.position_ms is not None:
         seen = min(message.position_ms, participant.length_ms)
         if seen > participant.position_ms:
@@ -206,7 +206,7 @@ def _once(
     if (index, due) != (at.index, at.phase):
         return Reply(repeated=True, done=False, standing=at)
     happen(participant, at)
-    _log(connection, participant, index, at.stimulus.id, message)
+    log_message(connection, participant, index, at.stimulus.id, message)
     if due != Phase.ASKING:
         return Reply(repeated=False, done=False, standing=None)
     done = index == study.trials
@@ -215,30 +215,3 @@ def _once(
         done=done,
         standing=None if done else _ready(study, participant, index + 1),
     )
-
-
-def _log(
-    connection: Connection,
-    participant: Record,
-    index: int | None,
-    stimulus: str | None,
-    message: Message,
-) -> None:
-    now = repository.now()
-    rows: list[dict[str, Any]] = [
-        {
-            "participant_id": participant.id,
-            "message_key": message.key,
-            "ordinal": ordinal,
-            "trial_index": index,
-            "type": event.type,
-            "server_time": now,
-            "client_time_ms": event.client_time_ms,
-            "details": event.details,
-            "stimulus": stimulus,
-            "study_hash": participant.study_hash,
-            "app_version": VERSION,
-        }
-        for ordinal, event in enumerate(message.events)
-    ]
-    repository.log(connection, rows)

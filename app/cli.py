@@ -33,13 +33,14 @@ def serve(
 
     import uvicorn
 
-    from app.main import create_app, open_database
+    from app.main import create_app
+    from app.opening import open_database
     from app.settings import load_settings
     from app.study import load_study
 
     settings = load_settings()
     # What can go wrong is tried first, so that it is told in one line: the file and the port.
-    open_database(settings, load_study(settings)).close()
+    open_database(load_study(settings)).close()
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.create_server((host, port), family=family) as listener:
         server = uvicorn.Server(uvicorn.Config(create_app(settings), log_level="warning"))
@@ -61,7 +62,7 @@ def export(
     """
     from app.errors import DatabaseMismatch
     from app.export import export as write_export
-    from app.main import open_database
+    from app.opening import open_database
     from app.settings import load_settings
     from app.study import load_study
 
@@ -72,7 +73,7 @@ def export(
             "GOALGUESS_DATABASE_URL names it"
         )
     study = load_study(settings)
-    database = open_database(settings, study)
+    database = open_database(study)
     try:
         counts = write_export(database, study, to, simulated)
     finally:

@@ -8,11 +8,11 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from starlette.responses import Response
 
-from app import enrolment
 from app.database import Database
 from app.errors import WrongStep
 from app.pages import Pages
 from app.repository import Record
+from app.sessions import participant_of
 from app.settings import Ending, Settings
 from app.steps import ENDINGS, Step
 from app.study import Study
@@ -63,7 +63,7 @@ async def participant_at(request: Request, *steps: Step) -> Record:
     """The participant, who must be at one of the steps; AtAnotherStep leads to theirs."""
     token = token_of(request)
     participant = await services(request).database.read(
-        lambda connection: enrolment.participant_of(connection, token)
+        lambda connection: participant_of(connection, token)
     )
     if participant.step not in steps:
         raise AtAnotherStep(Step(participant.step))

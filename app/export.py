@@ -8,7 +8,7 @@ from typing import Any
 from sqlalchemy import Connection
 
 from analysis import EVENTS, PARTICIPANTS, TRIALS, code_book, prediction_time_s, write_table
-from app import repository
+from app import books
 from app.answering import score_trial
 from app.database import Database
 from app.repository import Record
@@ -25,11 +25,11 @@ def export(database: Database, study: Study, folder: Path, simulated: bool) -> d
     """
 
     def gather(connection: Connection) -> dict[str, list[Row]]:
-        trials = [_trial(study, record) for record in repository.all_trials(connection)]
+        trials = [_trial(study, record) for record in books.all_trials(connection)]
         return {
             TRIALS.name: trials,
             PARTICIPANTS.name: list(_participants(connection, trials)),
-            EVENTS.name: [_event(record) for record in repository.all_events(connection)],
+            EVENTS.name: [_event(record) for record in books.all_events(connection)],
         }
 
     rows = database.read_now(gather)
@@ -90,7 +90,7 @@ def _participants(connection: Connection, trials: list[Row]) -> Iterator[Row]:
     scores: dict[str, list[float]] = {}
     for trial in trials:
         scores.setdefault(trial["participant"], []).append(trial["score"])
-    for record in repository.all_participants(connection):
+    for record in books.all_participants(connection):
         theirs = scores.get(record.pseudonym, [])
         yield {
             "participant": record.pseudonym,

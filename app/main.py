@@ -8,15 +8,14 @@ from fastapi import FastAPI, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from app import VERSION, enrolment, participant, trials_api
-from app.database import Database
+from app import VERSION, participant, trials_api
 from app.deps import AtAnotherStep, Services, as_json, page, see
 from app.errors import AppError, Moved
+from app.opening import open_database
 from app.pages import Pages, static_app
-from app.schema import prepare
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
 from app.settings import Settings
-from app.study import Study, load_study
+from app.study import load_study
 
 log = logging.getLogger("goalguess")
 
@@ -28,7 +27,7 @@ def create_app(settings: Settings) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        database = open_database(settings, study)
+        database = open_database(study)
         app.state.services = Services(settings, study, database, pages)
         yield
         database.close()
@@ -50,21 +49,6 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_exception_handler(HTTPException, _render_http_error)
     app.add_exception_handler(Exception, _render_crash)
     return app
-
-
-def open_database(settings: Settings, study: Study) -> Database:
-    """The database of the settings, up to date; DatabaseMismatch if it is not ours."""
-    file = settings.database_file
-    prepare(settings.database_url, str(file))
-    database = Database(settings.database_url)
-    try:
-        database.submit(lambda c: enrolment.open_books(c, study)).result()
-        journal = settings.withdrawals_file
-        database.submit(lambda c: enrolment.withdraw_again(c, journal)).result()
-    except BaseException:
-        database.close()
-        raise
-    return database
 
 
 def render_error(request: Request, error: Exception) -> Response:

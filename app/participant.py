@@ -5,8 +5,9 @@ import secrets
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
 
-from app import answering, enrolment
+from app import answering, arrival, enrolment
 from app.answering import TrialScore
+from app.arrival import Link
 from app.deps import (
     PATHS,
     page,
@@ -16,7 +17,6 @@ from app.deps import (
     services,
     token_of,
 )
-from app.enrolment import Link
 from app.errors import InvalidInput, WrongStep
 from app.questions import ABOUT_YOU, CONTROL, answers
 from app.steps import CONTROL_TRIES, ENDINGS, Step
@@ -33,12 +33,12 @@ async def arrive(request: Request) -> Response:
     link = Link.read(request.query_params)
     at = services(request)
     token = token_of(request)
-    known = await at.database.read(lambda c: enrolment.find(c, link, token))
+    known = await at.database.read(lambda c: arrival.find(c, link, token))
     if known is None:
         fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
         return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
     if known.moves:
-        token = await at.database.write(lambda c: enrolment.come_back(c, link))
+        token = await at.database.write(lambda c: arrival.come_back(c, link))
         return see(PATHS[known.step], token, secure=request.url.scheme == "https")
     return see(PATHS[known.step])
 
@@ -49,14 +49,14 @@ async def consent(request: Request) -> Response:
     form = await _form(request)
     at = services(request)
     if form.get("decision") != "yes":
-        await at.database.write(enrolment.decline)
+        await at.database.write(arrival.decline)
         return see("/no-consent")
-    arrival = form.get("arrival", "")
-    if not 16 <= len(arrival) <= 64:
+    nonce = form.get("arrival", "")
+    if not 16 <= len(nonce) <= 64:
         raise InvalidInput("arrival: expected the hidden field of the consent page.")
     link = Link.read(form)
     agent = request.headers.get("user-agent", "")[:400]
-    token = await at.database.write(lambda c: enrolment.consent(c, at.study, arrival, link, agent))
+    token = await at.database.write(lambda c: arrival.consent(c, at.study, nonce, link, agent))
     return see("/about-you", token, secure=request.url.scheme == "https")
 
 

@@ -1,4 +1,6 @@
-"""Every query. Functions take an open connection and plain values, and apply no rules.
+"""Every query about a participant; those about the whole study are in `books`.
+
+Functions take an open connection and plain values, and apply no rules.
 
 Statements that run on every answer are built once: building one takes longer than running it.
 """
@@ -16,11 +18,8 @@ from app.tables import (
     events,
     participants,
     places,
-    randomisation,
     recruits,
     sessions,
-    studies,
-    tallies,
     trials,
 )
 
@@ -30,49 +29,6 @@ Record = Row[Any]
 def now() -> datetime:
     """The server's clock, UTC."""
     return datetime.now(UTC)
-
-
-# --- the study ---------------------------------------------------------------------------------
-
-
-def register_study(
-    connection: Connection, study_hash: str, definition: Mapping[str, Any], pool_hash: str
-) -> None:
-    """Keep a definition of the study for those who read its hash later."""
-    connection.execute(
-        insert(studies)
-        .values(hash=study_hash, definition=definition, pool_hash=pool_hash, first_used_at=now())
-        .on_conflict_do_nothing()
-    )
-
-
-def pool_in_use(connection: Connection) -> str | None:
-    """Hash of the pool that the places of this database were dealt from."""
-    return connection.scalar(select(studies.c.pool_hash).limit(1))
-
-
-def draw_from(connection: Connection, seed: int, block_size: int) -> None:
-    """Store what the dealing is drawn from, unless this database has it already."""
-    connection.execute(
-        insert(randomisation)
-        .values(id=1, seed=seed, block_size=block_size)
-        .on_conflict_do_nothing()
-    )
-
-
-def drawn_from(connection: Connection) -> Record:
-    """Seed and block size of the dealing."""
-    return connection.execute(select(randomisation)).one()
-
-
-def tally(connection: Connection, name: str) -> None:
-    """Count one more of something, without saying of whom."""
-    statement = insert(tallies).values(name=name, count=1)
-    connection.execute(
-        statement.on_conflict_do_update(
-            index_elements=["name"], set_={"count": tallies.c.count + 1}
-        )
-    )
 
 
 # --- participants and their sessions -----------------------------------------------------------
@@ -337,49 +293,3 @@ def log(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
     """Append events; those of a message that was logged before are left out."""
     if rows:
         connection.execute(_LOG, list(rows))
-
-
-# --- the export --------------------------------------------------------------------------------
-
-
-def all_trials(connection: Connection) -> Iterable[Record]:
-    """Every answered trial with its participant and condition, in order."""
-    return connection.execute(
-        select(
-            trials,
-            places.c.condition,
-            participants.c.pseudonym,
-            participants.c.stream,
-            participants.c.study_hash,
-            participants.c.app_version,
-        )
-        .join(participants, participants.c.id == trials.c.participant_id)
-        .join(places, places.c.participant_id == participants.c.id)
-        .where(trials.c.answered_at.is_not(None))
-        .order_by(participants.c.id, trials.c.trial_index)
-    )
-
-
-def all_participants(connection: Connection) -> Iterable[Record]:
-    """Every participant with place and demographics, in order of arrival."""
-    return connection.execute(
-        select(
-            participants,
-            places.c.condition,
-            places.c.dealt_at,
-            places.c.played_at,
-            *(column for column in demographics.c if column.name != "participant_id"),
-        )
-        .outerjoin(places, places.c.participant_id == participants.c.id)
-        .outerjoin(demographics, demographics.c.participant_id == participants.c.id)
-        .order_by(participants.c.id)
-    )
-
-
-def all_events(connection: Connection) -> Iterable[Record]:
-    """The log with pseudonyms, in its order."""
-    return connection.execute(
-        select(events, participants.c.pseudonym, participants.c.stream)
-        .join(participants, participants.c.id == events.c.participant_id)
-        .order_by(events.c.id)
-    )

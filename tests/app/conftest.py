@@ -12,7 +12,8 @@ from sqlalchemy import Select, Table, select
 from starlette.testclient import TestClient
 
 from app.database import Database
-from app.main import create_app, open_database
+from app.main import create_app
+from app.opening import open_database
 from app.schema import prepare
 from app.settings import Settings
 from app.study import Study, load_study
@@ -42,8 +43,8 @@ def study(settings: Settings) -> Study:
 
 
 @pytest.fixture
-def database(settings: Settings, study: Study) -> Iterator[Database]:
-    database = open_database(settings, study)
+def database(study: Study) -> Iterator[Database]:
+    database = open_database(study)
     yield database
     database.close()
 

@@ -1,16 +1,18 @@
 """The trials: what is stored, what is refused, and that nothing can be sent twice to effect."""
 
 import json
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from analysis import correct, score
-from app import answering, enrolment
-from app.enrolment import Link
+from app import answering, arrival, enrolment, repository
+from app.arrival import Link
 from app.errors import AppError
 from app.schemas import Answered, Played, Stopped
+from app.sessions import participant_of
 from app.steps import Step
 from app.tables import events, participants, places, trials
 from tests import messages
@@ -230,7 +232,7 @@ def test_without_a_session_nothing_is_taken(browser):
     assert (reply.status_code, reply.json()["error"]["code"]) == (401, "no_session")
 
 
-MOMENTS = {
+MOMENTS: dict[str, tuple[Any, ...]] = {
     "played": (Played, answering.played, lambda _tab: messages.played()),
     "stopped": (Stopped, answering.stopped, lambda tab: messages.stopped(1000.0 * tab)),
     "answered": (Answered, answering.answered, lambda tab: messages.answered("ABC"[tab])),
@@ -254,9 +256,9 @@ def test_answers_in_any_interleaving_of_three_tabs_are_stored_once_and_stay(
     """Whatever arrives, in whatever order and how often: the first that was due is what stays."""
 
     def arrive(connection):
-        token = enrolment.consent(connection, study, messages.key(), Link(), "test")
-        participant = enrolment.participant_of(connection, token)
-        enrolment.repository.change_participant(connection, participant.id, step=Step.TRIALS)
+        token = arrival.consent(connection, study, messages.key(), Link(), "test")
+        participant = participant_of(connection, token)
+        repository.change_participant(connection, participant.id, step=Step.TRIALS)
         enrolment.deal(connection, study, participant)
         return token, participant.id
 

@@ -3,7 +3,7 @@
 import pytest
 from starlette.testclient import TestClient
 
-from app import participant
+from app import arrival
 from app.main import create_app
 from tests import messages
 from tests.app.conftest import ORIGIN, Browser
@@ -114,7 +114,7 @@ def test_a_crash_tells_the_browser_nothing_of_the_code(settings, monkeypatch):
     def crash(*_arguments):
         raise RuntimeError("secret detail")
 
-    monkeypatch.setattr(participant.enrolment, "find", crash)
+    monkeypatch.setattr(arrival, "find", crash)
     with TestClient(create_app(settings), base_url=ORIGIN, raise_server_exceptions=False) as client:
         reply = client.get("/")
     assert reply.status_code == 500

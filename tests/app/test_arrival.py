@@ -1,0 +1,114 @@
+"""Arrival: the link, consent, coming back, and which browser is the one that counts."""
+
+import re
+
+from starlette.testclient import TestClient
+
+from app.main import create_app
+from app.tables import (
+    events,
+    participants,
+    recruits,
+    sessions,
+    tallies,
+)
+from tests.app.conftest import ORIGIN, Browser
+
+PROLIFIC = "?PROLIFIC_PID=p1&STUDY_ID=s1&SESSION_ID=x1"
+
+
+def location(response):
+    return response.headers["location"]
+
+
+def test_opening_the_link_stores_nothing_before_consent(browser, rows):
+    browser.get("/" + PROLIFIC)
+    assert rows(participants) == rows(recruits) == rows(events) == []
+
+
+def test_no_consent_keeps_an_anonymous_count_and_nothing_else(browser, rows):
+    browser.get("/" + PROLIFIC)
+    reply = browser.post("/consent", {"decision": "no", "PROLIFIC_PID": "p1"})
+    assert location(reply) == "/no-consent"
+    assert browser.get("/no-consent").status_code == 200
+    assert [tuple(row) for row in rows(tallies)] == [("arrived, no consent", 1)]
+    assert rows(participants) == rows(recruits) == rows(events) == rows(sessions) == []
+
+
+def test_consent_makes_a_participant_with_the_hash_of_the_text_agreed_to(browser, rows, study):
+    assert location(browser.consent(PROLIFIC)) == "/about-you"
+    (participant,) = rows(participants)
+    assert participant.step == "about_you"
+    assert participant.consent_hash == study.consent_hash
+    assert participant.study_hash == study.hash
+    assert participant.consented_at is not None
+    (recruit,) = rows(recruits)
+    assert (recruit.recruiter_id, recruit.recruiter_study, recruit.recruiter_session) == (
+        "p1",
+        "s1",
+        "x1",
+    )
+
+
+def test_consent_sent_twice_makes_one_participant(browser, rows):
+    page = browser.get("/")
+
+    fields = dict(re.findall(r'name="(arrival)" value="(.*?)"', page.text))
+    for _ in range(2):
+        browser.post("/consent", {**fields, "decision": "yes"})
+    assert len(rows(participants)) == 1
+
+
+def test_the_same_recruiter_id_comes_back_to_where_it_was(browser, another_browser, rows):
+    browser.reach_practice(PROLIFIC)
+    assert location(another_browser().get("/" + PROLIFIC)) == "/practice"
+    assert len(rows(participants)) == 1
+
+
+def test_consenting_in_two_browsers_with_one_recruiter_id_makes_one_participant(
+    browser, another_browser, rows
+):
+    other = another_browser()
+    first, second = browser.get("/" + PROLIFIC), other.get("/" + PROLIFIC)
+    assert first.status_code == second.status_code == 200
+    browser.consent(PROLIFIC)
+    other.consent(PROLIFIC)
+    assert len(rows(participants)) == 1
+
+
+def test_the_link_moves_the_session_to_the_newest_browser_and_the_older_is_told(
+    browser, another_browser
+):
+    browser.reach_trials(PROLIFIC)
+    newer = another_browser()
+    newer.get("/" + PROLIFIC)
+    assert newer.get("/trial").status_code == 200
+    told = browser.get("/trial")
+    assert told.status_code == 409
+    assert "another browser" in told.text
+    assert browser.play(1).json()["error"]["code"] == "moved"
+    assert newer.play(1).status_code == 200
+
+
+def test_opening_the_link_again_in_the_same_browser_begins_no_new_session(browser, rows):
+    browser.reach_practice(PROLIFIC)
+    assert location(browser.get("/" + PROLIFIC)) == "/practice"
+    assert len(rows(sessions)) == 1
+
+
+def test_an_anonymous_participant_comes_back_by_the_browser(browser, another_browser):
+    browser.reach_practice()
+    assert location(browser.get("/")) == "/practice"
+    assert another_browser().get("/").status_code == 200
+
+
+def test_an_impossible_recruiter_id_is_refused_in_words(browser):
+    reply = browser.get("/?PROLIFIC_PID=" + "x" * 101)
+    assert reply.status_code == 422
+    assert "PROLIFIC_PID: expected at most 100" in reply.text
+
+
+def test_no_new_participant_begins_in_a_closed_study(settings):
+    closed = settings.model_copy(update={"study_open": False})
+    with TestClient(create_app(closed), base_url=ORIGIN) as client:
+        assert Browser(client).consent().status_code == 409

@@ -1,0 +1,45 @@
+"""Opening the database: its pool, its seed."""
+
+import pytest
+from sqlalchemy import update
+
+from app.books import drawn_from
+from app.errors import DatabaseMismatch
+from app.opening import open_database
+from app.settings import Settings
+from app.study import load_study
+from app.tables import studies
+
+
+def test_the_seed_is_stored_when_the_database_is_made_and_stays(settings, study):
+    open_database(study).close()
+    changed = settings.model_copy(update={"seed": 2, "block_size": 8})
+    database = open_database(load_study(changed))
+    drawn = database.read_now(drawn_from)
+    database.close()
+    assert (drawn.seed, drawn.block_size) == (1, 4)
+
+
+def test_without_a_seed_one_is_drawn_at_random(tmp_path):
+    seeds = set()
+    for name in ("a", "b"):
+        database = open_database(load_study(Settings(database_url=f"sqlite:///{tmp_path}/{name}")))
+        seeds.add(database.read_now(drawn_from).seed)
+        database.close()
+    assert len(seeds) == 2
+
+
+def test_each_definition_of_the_study_is_kept_with_its_hash(settings, study, database):
+    slower = settings.model_copy(update={"step_ms": 2000})
+    open_database(load_study(slower)).close()
+    rows = database.read_now(lambda connection: connection.execute(studies.select()).all())
+    assert {row.definition["step_ms"] for row in rows} == {1000, 2000}
+    assert study.hash in {row.hash for row in rows}
+
+
+def test_a_database_dealt_from_another_pool_is_refused(study):
+    database = open_database(study)
+    database.submit(lambda c: c.execute(update(studies).values(pool_hash="f" * 64))).result()
+    database.close()
+    with pytest.raises(DatabaseMismatch, match="found ffffffffffff"):
+        open_database(study)
