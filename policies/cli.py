@@ -91,6 +91,8 @@ def build(
     with _one_clear_line():
         from policies.pool_build import build as build_pool
 
+        if not to.is_dir():
+            raise StimulusError(f"{to}: expected a folder to write to")
         texts = build_pool(seed, progress=lambda doing: typer.echo(f"{doing} ...", err=True))
         _write({to / name: text for name, text in texts.items()})
         typer.echo(f"wrote {' and '.join(texts)} to {to}")

@@ -7,6 +7,7 @@ from enum import IntEnum
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +48,13 @@ class Maze:
     goals: Mapping[str, int]
     wall_right: NDArray[np.bool_]
     wall_below: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "goals", MappingProxyType(dict(self.goals)))
+
+    def __reduce__(self) -> tuple[type["Maze"], tuple[Any, ...]]:
+        # A read-only mapping does not pickle; parallel work needs mazes that do.
+        return Maze, (self.rows, self.cols, dict(self.goals), self.wall_right, self.wall_below)
 
     @property
     def states(self) -> int:
@@ -125,7 +133,7 @@ def parse_maze(text: str, source: str = "maze") -> Maze:
             wall_below[line // 2 - 1, column // 4] = found == "---"
     if not goals:
         raise MazeError(f"{source}: expected at least one goal (a capital letter), found none")
-    maze = Maze(rows, cols, MappingProxyType(dict(sorted(goals.items()))), wall_right, wall_below)
+    maze = Maze(rows, cols, dict(sorted(goals.items())), wall_right, wall_below)
     _check_reachable(maze, source)
     return maze
 
@@ -176,7 +184,7 @@ def random_maze(
     return Maze(
         rows,
         cols,
-        MappingProxyType(dict(zip(letters, places.tolist(), strict=True))),
+        dict(zip(letters, places.tolist(), strict=True)),
         wall[:beside].reshape(rows, cols - 1),
         wall[beside:].reshape(rows - 1, cols),
     )

@@ -15,6 +15,7 @@ from policies.mdp import Array
 from policies.observer import OBSERVER_BETA, movement_beliefs, steps_until_sure
 from policies.pool import CONDITIONS, content_hash
 from policies.pool_rule import (
+    DESIGN,
     MAZES,
     PARAMETERS,
     PRACTICE_MAZE,
@@ -135,6 +136,7 @@ def manifest(pool: Mapping[str, Any], planner: Planner) -> dict[str, Any]:
         "pool_sha256": content_hash(pool),
         "seed": planner.seed,
         "parameters": {**asdict(PARAMETERS), "failure": FAILURE, "beta_observer": OBSERVER_BETA},
+        "design": list(DESIGN),
         "rule": list(RULE),
         "mazes_sha256": {n: content_hash(format_maze(m)) for n, m in planner.mazes.items()},
         "prediction": prediction(steps),

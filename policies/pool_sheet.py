@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.ticker import MaxNLocator
 
 from policies.maze import Maze
 from policies.pool import CONDITIONS, Pool, Scenario, Scene, Stimulus, load_pool
@@ -52,6 +53,7 @@ def _draw_scenario(place: SubFigure, pool: Pool, scenario: Scenario, maze: Maze)
         belief = beliefs(maze, shown.cells)[:, n]
         curve.plot(belief, color=COLOURS[condition], marker=".", markersize=3, linewidth=1)
     curve.axhline(SURE, color="0.6", linewidth=0.5, linestyle=":")
+    curve.xaxis.set_major_locator(MaxNLocator(integer=True))
     curve.set(ylim=(-0.03, 1.03), yticks=(0, SURE, 1))
 
 

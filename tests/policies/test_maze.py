@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -63,6 +65,9 @@ class TestParsing:
     def test_goals_cannot_be_changed(self):
         with pytest.raises(TypeError):
             parse_maze(SMALL).goals["A"] = 3  # type: ignore[index]
+
+    def test_can_be_sent_to_another_process(self):
+        assert same(pickle.loads(pickle.dumps(parse_maze(SMALL))), parse_maze(SMALL))
 
     @given(st.integers(1, 8), st.integers(1, 8), st.integers(0, 10**6), st.floats(0, 1), st.data())
     def test_any_random_maze_survives_writing_and_reading(self, rows, cols, seed, openness, data):
