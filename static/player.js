@@ -21,7 +21,7 @@ export class Player {
   #playback = null;
   #countFrom = null;
   #step = 0;
-  #keyHeld = false;
+  #held = null; // the keydown of a key that is down
   #request = 0;
   #settling = 0;
 
@@ -35,8 +35,7 @@ export class Player {
     this.#button.addEventListener("click", (event) => this.#click(event));
     this.#button.addEventListener("pointerdown", (event) => this.#pointerDown(event));
     document.addEventListener("keydown", (event) => this.#keyDown(event));
-    // A click made by a key follows its keyup: the key counts as held until that has passed.
-    document.addEventListener("keyup", () => setTimeout(() => (this.#keyHeld = false)));
+    document.addEventListener("keyup", () => this.#keyUp());
     document.addEventListener("visibilitychange", (event) => {
       if (document.hidden) this.pause(event.timeStamp);
     });
@@ -91,7 +90,7 @@ export class Player {
 
   /** Play or Continue. Stop is only reached here through a click that no pointer and no key made. */
   #click(event) {
-    const assistive = event.detail === 0 && !this.#keyHeld;
+    const assistive = event.detail === 0 && !this.#held;
     if (this.phase === "moving" && assistive) this.#stop(event.timeStamp);
     else if (this.phase === "ready" || this.phase === "paused") {
       if (event.detail === 0) this.pointerType = "keyboard";
@@ -112,7 +111,7 @@ export class Player {
       if (onButton) event.preventDefault();
       return;
     }
-    this.#keyHeld = true;
+    this.#held = event;
     const free = !event.target.closest?.("a, button, input, select, summary");
     const pressed = (event.key === " " && (onButton || free)) || (event.key === "Enter" && onButton);
     if (!pressed || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -124,6 +123,14 @@ export class Player {
       this.pointerType = "keyboard";
       this.#countIn();
     }
+  }
+
+  /** A click made by a key follows its keyup: the key counts as held until that has passed. */
+  #keyUp() {
+    const released = this.#held;
+    setTimeout(() => {
+      if (this.#held === released) this.#held = null;
+    });
   }
 
   #countIn() {

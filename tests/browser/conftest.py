@@ -17,7 +17,7 @@ from app.main import create_app
 from app.settings import Settings
 from tests.browser import chromium
 
-STEP_MS = 120
+STEP_MS = 100
 LEAD_IN_MS = 200
 DESKTOP = {"width": 1280, "height": 800}
 PHONE = {"width": 360, "height": 740}

@@ -33,8 +33,8 @@ def test_by_mouse_with_double_clicks_reloads_and_the_back_button(
     guard.expected = ("422",)  # the form that is sent empty at first
     page = visit(viewport=DESKTOP)
     page.goto("/?PROLIFIC_PID=5f1e0c2a9b3d4e6f7a8b9c0d&STUDY_ID=s1&SESSION_ID=t1")
-    page.click("text=I agree and take part")
-    page.click("text=Continue")
+    page.get_by_role("button", name="I agree and take part").click()
+    page.get_by_role("button", name="Continue").click()
     expect(page.get_by_role("alert")).to_contain_text("6 answers")
     page.fill("[name=age]", "31")
     page.check("[name=gender][value=woman]")
@@ -42,8 +42,8 @@ def test_by_mouse_with_double_clicks_reloads_and_the_back_button(
     page.check("[name=education][value='doctorate']")
     page.check("[name=occupation][value='student']")
     page.check("[name=robot_familiarity][value='not at all']")
-    page.click("text=Continue")
-    page.click("text=Try it once")
+    page.get_by_role("button", name="Continue").click()
+    page.get_by_role("button", name="Try it once").click()
 
     walk.ready(page)
     page.click("#play")

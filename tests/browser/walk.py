@@ -2,23 +2,23 @@
 
 import re
 
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import Page
 
 from tests import messages
 
 
-def reach_practice(page: Page) -> None:
+def reach_practice(page: Page, link: str = "/") -> None:
     """By plain requests, as the forms would send them."""
-    page.goto("/")
+    page.goto(link)
     fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.content()))
     _post(page, "/consent", {**fields, "decision": "yes"})
     _post(page, "/about-you", messages.ABOUT_ME)
     _post(page, "/instructions", {})
 
 
-def reach_trials(page: Page) -> None:
+def reach_trials(page: Page, link: str = "/") -> None:
     """To the first trial, opened and ready to be played."""
-    reach_practice(page)
+    reach_practice(page, link)
     _post(page, "/practice", messages.RIGHT_ANSWER)
     page.goto("/trial")
     ready(page)
@@ -29,11 +29,11 @@ def _post(page: Page, path: str, form: dict[str, str]) -> None:
     assert reply.ok, f"{path}: {reply.status}"
 
 
-def phase(page: Page, name: str) -> Locator:
+def phase(page: Page, name: str) -> None:
     """Wait until the stage is in a phase and takes presses."""
-    stage = page.locator(f"#stage[data-phase={name}]:not(.settling)")
-    stage.wait_for()
-    return stage
+    page.wait_for_function(
+        "name => document.querySelector(`#stage[data-phase=${name}]:not(.settling)`)", arg=name
+    )
 
 
 def ready(page: Page) -> None:

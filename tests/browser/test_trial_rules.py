@@ -1,0 +1,159 @@
+"""What a round records, and what must not be possible in it."""
+
+from playwright.sync_api import Page, expect
+
+from tests.browser import walk
+from tests.browser.conftest import STEP_MS, Site, Visit
+
+# Notes the time stamps of the first frame in motion and of every press, beside the study's code.
+WITNESS = """
+    window.witness = { zero: null, presses: [] };
+    const request = requestAnimationFrame.bind(window);
+    const phase = () => document.querySelector("#stage")?.dataset.phase;
+    window.requestAnimationFrame = (callback) => request((time) => {
+        const before = phase();
+        callback(time);
+        if (before === "counting" && phase() === "moving") witness.zero = time;
+    });
+    for (const type of ["pointerdown", "keydown"]) {
+        addEventListener(type, (event) => witness.presses.push(event.timeStamp), true);
+    }
+"""
+HIDE = """hidden => {
+    Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""
+
+
+def stop_seen_by_witness(page: Page) -> float:
+    seen: float = page.evaluate("witness.presses.at(-1) - witness.zero")
+    return seen
+
+
+def test_the_stop_time_is_the_press_minus_the_first_frame_in_motion(site: Site, visit: Visit):
+    page = visit()
+    page.add_init_script(WITNESS)
+    walk.reach_trials(page)
+    walk.play(page, 2 * STEP_MS)
+    walk.stop(page)
+    by_mouse = stop_seen_by_witness(page)
+    walk.answer(page, "A", 4)
+    walk.round_is(page, 2)
+    page.keyboard.press("Space")
+    walk.moved(page, 2 * STEP_MS)
+    page.keyboard.press("Space")
+    by_key = stop_seen_by_witness(page)
+    walk.answer(page, "B", 4)
+    walk.round_is(page, 3)
+    stops = [row["stop_time_ms"] for row in site.trials()]
+    assert abs(stops[0] - by_mouse) <= 0.1
+    assert abs(stops[1] - by_key) <= 0.1
+
+
+def test_the_press_that_plays_never_stops_however_long_it_is_held(site: Site, visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    for key in ("Space", "Enter"):
+        page.locator("#play").focus()
+        page.keyboard.down(key)
+        page.keyboard.down(key)  # what holding a key sends
+        if key == "Space":
+            page.keyboard.up(key)
+            page.keyboard.down(key)
+        walk.moved(page, 2 * STEP_MS)
+        page.keyboard.down(key)
+        page.keyboard.up(key)
+        walk.moved(page, 4 * STEP_MS)
+        page.keyboard.press(key)
+        walk.phase(page, "stopped")
+        walk.answer(page, "A", 4)
+        walk.ready(page)
+    assert all(row["stop_time_ms"] >= 4 * STEP_MS for row in site.trials())
+
+
+def test_a_stop_is_final_and_says_nothing_about_right_or_wrong(site: Site, visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    walk.play(page)
+    walk.stop(page)
+    expect(page.locator("#play")).to_be_hidden()
+    page.keyboard.press("Space")
+    page.locator("#maze").click(position={"x": 3, "y": 3})
+    assert page.locator("#stage").get_attribute("data-phase") == "stopped"
+    page.click("#next")
+    expect(page.locator("#missing")).to_have_text("Choose an area first.")
+    page.keyboard.press("c")
+    page.click("#next")
+    expect(page.locator("#missing")).to_have_text("Say how sure you are.")
+    page.keyboard.press("5")
+    page.keyboard.press("Enter")
+    walk.round_is(page, 2)
+    (row,) = site.trials()
+    assert (row["guess"], row["confidence"]) == ("C", 5)
+
+
+def test_an_area_can_be_chosen_in_the_maze(site: Site, visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    walk.play(page)
+    walk.stop(page)
+    areas = page.evaluate("fetch('/api/trial').then(reply => reply.json())")["trial"]["playback"]
+    row, col = next(area["cell"] for area in areas["areas"] if area["letter"] == "D")
+    box = page.locator("#maze").bounding_box()
+    assert box
+    cell = box["width"] / (areas["cols"] + 0.24)
+    page.mouse.click(box["x"] + cell * (col + 0.62), box["y"] + cell * (row + 0.62))
+    expect(page.locator("input[value=D]")).to_be_checked()
+
+
+def test_a_hidden_tab_pauses_and_motion_time_does_not_run(site: Site, visit: Visit):
+    page = visit()
+    page.add_init_script(WITNESS)
+    walk.reach_trials(page)
+    walk.play(page, STEP_MS)
+    page.evaluate(HIDE, True)
+    walk.phase(page, "paused")
+    page.evaluate("new Promise(resolve => setTimeout(resolve, 600))")
+    page.evaluate(HIDE, False)
+    page.get_by_role("button", name="Continue").click()
+    walk.moved(page, 2 * STEP_MS)
+    walk.stop(page)
+    walk.answer(page, "E", 2)
+    walk.round_is(page, 2)
+    (row,) = site.trials()
+    assert row["pauses"] == 1
+    assert row["paused_ms"] > 600
+    assert row["stop_time_ms"] < stop_seen_by_witness(page) + 1
+    logged = [kind for kind in ("hidden", "visible", "continued") if site.events(kind)]
+    assert logged == ["hidden", "visible", "continued"]
+
+
+def test_reduced_motion_is_honoured_and_stored(site: Site, visit: Visit):
+    page = visit(reduced_motion="reduce")
+    walk.reach_trials(page)
+    walk.play(page)
+    walk.stop(page)
+    walk.answer(page, "F", 6)
+    walk.round_is(page, 2)
+    (row,) = site.trials()
+    assert row["reduced_motion"] == 1
+
+
+def test_leaving_in_mid_motion_goes_on_where_it_was_never_from_the_beginning(
+    site: Site, visit: Visit
+):
+    page = visit()
+    walk.reach_trials(page)
+    walk.play(page, 3 * STEP_MS)
+    page.goto("about:blank")
+    page.goto("/trial")
+    walk.phase(page, "paused")
+    (row,) = site.trials()
+    assert row["position_ms"] >= 3 * STEP_MS
+    page.evaluate("localStorage.clear()")  # the server knows it too
+    page.click("#play")
+    walk.phase(page, "moving")
+    walk.stop(page)
+    (row,) = site.trials()
+    assert row["stop_time_ms"] >= 3 * STEP_MS
+    assert [event["trial_index"] for event in site.events("interrupted")] == [1]
