@@ -139,19 +139,14 @@ def log_legible_rewards(
 def guard(
     maze: Maze, goal: int, policy: Array, optimal: Array, actions: Sequence[Action]
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Put the shortest-path actions where certification fails, and certify again, until it holds.
+    """Put the shortest-path actions where certification fails; the result is always certified.
 
-    Ends: every round repairs at least one more state, and a policy repaired everywhere is the
-    optimal one. Returns the policy (S, A) and the repaired states (S,).
+    One round is enough: with d the distance, a repaired state needs at most one move more than
+    states at d - 1, hence at most 4 d by induction, which is less than before; so no state that
+    held becomes slower. Returns the policy (S, A) and the repaired states (S,).
     """
-    repaired = np.zeros(maze.states, bool)
-    while True:
-        guarded = np.where(repaired[:, None], optimal, policy)
-        fails = ~certify(maze, guarded, goal, actions).holds_at
-        if not fails.any():
-            return guarded, repaired
-        new = fails & ~repaired
-        repaired |= new if new.any() else True
+    repaired = ~certify(maze, policy, goal, actions).holds_at
+    return np.where(repaired[:, None], optimal, policy), repaired
 
 
 def _least_cost(

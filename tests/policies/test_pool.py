@@ -72,6 +72,8 @@ def test_nothing_of_it_can_be_changed():
 def test_the_hash_is_of_the_content_not_of_line_ends_or_layout():
     assert parse_pool(TEXT.replace("\n", "\r\n")).hash == POOL.hash
     assert parse_pool(json.dumps(json.loads(TEXT), indent=4)).hash == POOL.hash
+    turned = dict(reversed(json.loads(TEXT).items()))
+    assert parse_pool(json.dumps(turned)).hash == POOL.hash
     assert POOL.hash == content_hash(json.loads(TEXT))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from policies import StimulusError, parse_maze
+from policies.pool_build import package_mazes
 from policies.pool_rule import (
     Candidate,
     Planner,
@@ -82,10 +83,12 @@ class TestDraws:
         assert len(set(many)) > 1
 
     def test_practice_is_played_from_both_policies_in_equal_parts(self):
-        planner = Planner({"row": self.MAZE}, 5)
-        mixed = planner.policy("row", "A", "practice")
-        both = planner.policy("row", "A", "polmdp") + planner.policy("row", "A", "optimal")
-        assert np.array_equal(mixed, both / 2)
+        planner = Planner(package_mazes(), 5)
+        legible = planner.policy("practice", "A", "polmdp")
+        optimal = planner.policy("practice", "A", "optimal")
+        assert not np.array_equal(legible, optimal)
+        mixed = planner.policy("practice", "A", "practice")
+        assert np.array_equal(mixed, (legible + optimal) / 2)
 
     def test_legible_stimuli_are_guarded(self):
         assert Planner({"row": self.MAZE}, 5).plan("row", "A").parameters.guard

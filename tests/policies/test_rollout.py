@@ -70,6 +70,16 @@ def test_actions_come_as_often_as_the_policy_says():
     assert counts == pytest.approx(policy[0], abs=5 * np.sqrt(0.25 / len(taken)))
 
 
+def test_an_action_without_probability_is_never_taken():
+    class Lowest(np.random.Generator):
+        def random(self, *_, **__):
+            return 0.0
+
+    policy = np.tile([0.0, 0.0, 0.0, 0.0, 1.0], (4, 1))
+    run = draw_rollout(ROW, policy, 3, 0, Lowest(np.random.PCG64()), ACTIONS, max_steps=3)
+    assert run.actions.tolist() == [4, 4, 4]
+
+
 @pytest.mark.parametrize("start", [-1, 4])
 def test_a_start_outside_the_maze_is_refused(start):
     with pytest.raises(ModelError, match=f"a start from 0 to 3, came {start}"):

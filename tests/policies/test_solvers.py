@@ -87,12 +87,11 @@ class TestGeneralSolver:
     @pytest.mark.parametrize("seed", range(20))
     def test_ends_where_rounding_decides(self, seed):
         rng = np.random.default_rng(seed)
-        P = np.tile(rng.dirichlet(np.ones(4), 4), (3, 1))
-        # Optimal values around 0, where no relative difference is a tie.
-        r = np.tile(rng.normal(size=(4, 1)), (1, 3))
-        v = evaluate(MDP(csr_array(P), r, 0.99), np.full((4, 3), 1 / 3))
-        centred = r - ((np.eye(4) - 0.99 * P[:4]) @ v)[:, None]
-        assert np.abs(solve(MDP(csr_array(P), centred, 0.99)).v).max() < 1e-9
+        P = rng.dirichlet(np.ones(6), 18)
+        # All actions are equal, at values where a relative difference of 0 is no tie.
+        v = np.array([0.0, 0.0, 0.0, 1e3, -1e3, 500.0])
+        r = (np.tile(v, 3) - 0.99 * P @ v).reshape(3, 6).T
+        assert solve(MDP(csr_array(P), r, 0.99)).v == pytest.approx(v, abs=1e-8)
 
     @settings(max_examples=20)
     @given(st.integers(0, 10**6))
