@@ -27,6 +27,7 @@ stimuli = typer.Typer(no_args_is_help=True, help="Build, prove and look at the p
 commands.add_typer(stimuli, name="stimuli")
 
 DATA = Path(__file__).parent / "stimuli"
+PACKAGE = "the package's own"
 
 
 @commands.command()
@@ -82,7 +83,7 @@ def solve(
 @stimuli.command()
 def build(
     seed: Annotated[int, typer.Option(help="Seed of every draw and of the choice.")] = SEED,
-    to: Annotated[Path, typer.Option(help="Folder to write to.")] = DATA,
+    to: Annotated[Path, typer.Option(help="Folder to write to.", show_default=PACKAGE)] = DATA,
 ) -> None:
     """Build the pool's files from the mazes and a seed: the same bytes each time.
 
@@ -100,7 +101,9 @@ def build(
 
 @stimuli.command()
 def check(
-    folder: Annotated[Path, typer.Argument(help="Folder of the pool's files.")] = DATA,
+    folder: Annotated[
+        Path, typer.Argument(help="Folder of the pool's files.", show_default=PACKAGE)
+    ] = DATA,
 ) -> None:
     """Prove every rule of the manifest on the pool's files.
 

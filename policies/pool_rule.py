@@ -27,11 +27,13 @@ FROM_EQUAL_USE = 1
 PRACTICE_STEPS = (8, 12)
 
 DESIGN = (
-    "The mazes were drawn for the question: rooms, doors and passages that several goals share, "
-    "with more than one way. Rough plans were shaped by a search for a large expected saving over "
-    "draws from seeds other than the pool's; the rollouts then are what the pool's seed gives.",
-    "Preset `paper`, with the guard: no other variant or formulation tells clearly "
-    "sooner on these mazes.",
+    "The mazes were made for the question: rooms, doors and passages that several goals share, "
+    "and more than one way. Mirrored or turned room plans were shaped by a computer search for a "
+    "large expected saving over many draws of other seeds, and four unlike ones were taken.",
+    "Pools on earlier mazes were looked at and given up with them; the seed stayed the same, and "
+    "on these mazes it was drawn once.",
+    "Preset `paper`, with the guard: no other variant or formulation tells clearly sooner on these "
+    "mazes, which were shaped with it.",
 )
 
 RULE = (

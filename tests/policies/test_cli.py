@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from policies import Parameters, commands, load_pool, plan_legible, read_maze
+from policies import Parameters, commands, format_maze, load_pool, plan_legible, read_maze
+from policies.cli import DATA
 
 POOL = load_pool()
 
@@ -62,8 +63,6 @@ class TestSolve:
         assert len(solved) == 8
 
     def test_what_is_infinite_is_null(self, tmp_path, draw_maze):
-        from policies import format_maze
-
         maze = draw_maze(25, 25, 3, seed=1)
         (tmp_path / "m.txt").write_text(format_maze(maze), encoding="utf-8")
         to = tmp_path / "solved.json"
@@ -102,8 +101,6 @@ class TestStimuli:
     def test_build_writes_the_committed_bytes_with_the_committed_seed(self, tmp_path):
         result = run("stimuli", "build", "--to", tmp_path)
         assert result.exit_code == 0
-        from policies.cli import DATA
-
         for name in ("pool.json", "manifest.json"):
             assert (tmp_path / name).read_bytes() == (DATA / name).read_bytes()
         assert len(list(tmp_path.iterdir())) == 2
@@ -146,6 +143,7 @@ class TestStimuli:
 def test_every_command_has_help_with_an_example(command):
     result = run(*command.split(), "--help")
     assert result.exit_code == 0
+    assert str(DATA.parent) not in result.stdout
     assert f"Example: goalguess {command}" in " ".join(result.stdout.replace("│", " ").split())
 
 
