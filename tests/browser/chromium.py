@@ -55,7 +55,9 @@ def _installation() -> list[list[str]]:
         return []
     if os.geteuid() == 0:
         root: list[str] = []
-    elif shutil.which("sudo") and not subprocess.run(["sudo", "-n", "true"], check=False).returncode:
+    elif (
+        shutil.which("sudo") and not subprocess.run(["sudo", "-n", "true"], check=False).returncode
+    ):
         root = ["sudo", "-n"]
     else:
         return []

@@ -1,24 +1,20 @@
 """A study of one's own for each test, served for real, and visitors who come with a browser."""
 
-import socket
 import sqlite3
-import threading
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pytest
-import uvicorn
 from playwright.sync_api import Browser, BrowserContext, Page, Request, sync_playwright
 
-from app.main import create_app
 from app.settings import Settings
 from tests.browser import chromium
+from tests.browser.serving import served
 
-STEP_MS = 100
-LEAD_IN_MS = 200
+STEP_MS = 80
+LEAD_IN_MS = 100
 DESKTOP = {"width": 1280, "height": 800}
 PHONE = {"width": 360, "height": 740}
 
@@ -87,19 +83,8 @@ def settings(tmp_path: Path) -> Settings:
 
 @pytest.fixture
 def site(settings: Settings) -> Iterator[Site]:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    config = uvicorn.Config(create_app(settings), port=port, log_level="error", ws="none")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    while not server.started:
-        assert thread.is_alive(), "the server did not start"
-        time.sleep(0.01)
-    yield Site(f"http://127.0.0.1:{port}", settings.database_file)
-    server.should_exit = True
-    thread.join()
+    with served(settings) as url:
+        yield Site(url, settings.database_file)
 
 
 @pytest.fixture(scope="session")

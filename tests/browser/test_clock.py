@@ -59,14 +59,23 @@ def test_a_stop_never_lies_before_the_motion_or_after_its_end(page: Page):
 
 
 def test_the_first_stop_is_final(page: Page):
-    outcome = one(page, 9000, ("run", 0), ("stop", 500), ("run", 900), ("pause", 950), ("stop", 999))
+    outcome = one(
+        page, 9000, ("run", 0), ("stop", 500), ("run", 900), ("pause", 950), ("stop", 999)
+    )
     assert outcome["stoppedMs"] == 500
     assert outcome["seen"][1:] == [500, 500, 500, 500]
 
 
 def test_motion_goes_on_where_it_was_after_a_reload(page: Page):
     outcome = one(
-        page, 9000, ("run", 300), ("stop", 400), positionMs=2500, pauses=1, pausedMs=40, pausedAt=-700
+        page,
+        9000,
+        ("run", 300),
+        ("stop", 400),
+        positionMs=2500,
+        pauses=1,
+        pausedMs=40,
+        pausedAt=-700,
     )
     assert outcome["stoppedMs"] == 2600
     assert (outcome["pauses"], outcome["pausedMs"]) == (1, 1040)

@@ -92,7 +92,7 @@ def test_a_stop_is_final_and_says_nothing_about_right_or_wrong(site: Site, visit
     assert (row["guess"], row["confidence"]) == ("C", 5)
 
 
-def test_an_area_can_be_chosen_in_the_maze(site: Site, visit: Visit):
+def test_an_area_can_be_chosen_in_the_maze(visit: Visit):
     page = visit()
     walk.reach_trials(page)
     walk.play(page)

@@ -11,22 +11,29 @@ def reach_practice(page: Page, link: str = "/") -> None:
     """By plain requests, as the forms would send them."""
     page.goto(link)
     fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.content()))
-    _post(page, "/consent", {**fields, "decision": "yes"})
-    _post(page, "/about-you", messages.ABOUT_ME)
-    _post(page, "/instructions", {})
+    post(page, "/consent", {**fields, "decision": "yes"})
+    post(page, "/about-you", messages.ABOUT_ME)
+    post(page, "/instructions", {})
 
 
 def reach_trials(page: Page, link: str = "/") -> None:
     """To the first trial, opened and ready to be played."""
     reach_practice(page, link)
-    _post(page, "/practice", messages.RIGHT_ANSWER)
+    post(page, "/practice", messages.RIGHT_ANSWER)
     page.goto("/trial")
     ready(page)
 
 
-def _post(page: Page, path: str, form: dict[str, str]) -> None:
+def post(page: Page, path: str, form: dict[str, str]) -> None:
+    """Send a form as a page of ours would, without waiting for what it shows."""
     reply = page.request.post(path, form=dict(form), headers={"origin": page.evaluate("origin")})
     assert reply.ok, f"{path}: {reply.status}"
+
+
+def send(page: Page, path: str, body: messages.Body) -> None:
+    """Send a message as the trial page would."""
+    reply = page.request.post(path, data=body, headers={"origin": page.evaluate("origin")})
+    assert reply.ok, f"{path}: {reply.text()}"
 
 
 def phase(page: Page, name: str) -> None:
