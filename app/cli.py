@@ -43,7 +43,9 @@ def serve(
     open_database(load_study(settings)).close()
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.create_server((host, port), family=family) as listener:
-        server = uvicorn.Server(uvicorn.Config(create_app(settings), log_level="warning"))
+        server = uvicorn.Server(
+            uvicorn.Config(create_app(settings), log_level="warning", ws="none")
+        )
         typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
         typer.echo(f"The study is at http://{host}:{listener.getsockname()[1]}/")
         server.run(sockets=[listener])

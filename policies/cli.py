@@ -83,7 +83,7 @@ def solve(
 @stimuli.command()
 def build(
     seed: Annotated[int, typer.Option(help="Seed of every draw and of the choice.")] = SEED,
-    to: Annotated[Path, typer.Option(help="Folder to write to.", show_default=PACKAGE)] = DATA,
+    to: Annotated[Path, typer.Option(help="Folder, made if need be.", show_default=PACKAGE)] = DATA,
 ) -> None:
     """Build the pool's files from the mazes and a seed: the same bytes each time.
 
@@ -92,9 +92,8 @@ def build(
     with _one_clear_line():
         from policies.pool_build import build as build_pool
 
-        if not to.is_dir():
-            raise StimulusError(f"{to}: expected a folder to write to")
         texts = build_pool(seed, progress=lambda doing: typer.echo(f"{doing} ...", err=True))
+        to.mkdir(parents=True, exist_ok=True)
         _write({to / name: text for name, text in texts.items()})
         typer.echo(f"wrote {' and '.join(texts)} to {to}")
 

@@ -105,9 +105,9 @@ class TestStimuli:
             assert (tmp_path / name).read_bytes() == (DATA / name).read_bytes()
         assert len(list(tmp_path.iterdir())) == 2
 
-    def test_build_into_a_missing_folder_is_one_clear_line(self, tmp_path):
-        fails_with("none: expected a folder", "stimuli", "build", "--to", tmp_path / "none")
-        assert not (tmp_path / "none").exists()
+    def test_build_makes_the_folder_it_writes_to(self, tmp_path):
+        assert run("stimuli", "build", "--to", tmp_path / "new" / "pool").exit_code == 0
+        assert len(list((tmp_path / "new" / "pool").iterdir())) == 2
 
     def test_check_says_what_is_proved(self):
         result = run("stimuli", "check")
