@@ -187,8 +187,9 @@ class TestPlans:
         maze = random_maze(5, 6, 2, rng)
         goal, actions = maze.goals["A"], ACTION_SETS["udlrn"]
         optimal = shortest_path_policy(maze, goal, actions)
-        guarded, repaired = guard(maze, goal, rng.dirichlet(np.full(5, 0.2), 30), optimal, actions)
-        assert repaired.any()
+        policy = rng.dirichlet(np.full(5, 0.2), 30)
+        guarded, repaired = guard(maze, goal, policy, optimal, actions)
+        assert repaired.any() == (not certify(maze, policy, goal, actions).certified)
         assert certify(maze, guarded, goal, actions).certified
 
     def test_the_guard_changes_only_what_it_marks(self):
