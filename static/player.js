@@ -145,9 +145,9 @@ export class Player {
     this.meter.frame(time, this.phase === "moving");
     if (this.phase === "counting") {
       this.#countFrom ??= time;
-      const share = (time - this.#countFrom) / this.#playback.lead_in_ms;
-      if (share >= 1) this.#setOff(time);
-      else this.scene.draw({ ring: share });
+      const [counted, whole] = [time - this.#countFrom, this.#playback.lead_in_ms];
+      if (counted >= whole) this.#setOff(time);
+      else this.scene.draw({ ring: counted / whole });
     }
     if (this.phase === "moving") {
       const position = this.clock.position(time);

@@ -19,7 +19,8 @@ export class Questions {
     this.#onAnswer = onAnswer;
     this.#form.addEventListener("change", (event) => this.#note(event.target.name, event.timeStamp));
     this.#form.addEventListener("submit", (event) => this.#submit(event));
-    document.addEventListener("keydown", (event) => this.#key(event));
+    // Single letters and digits act only while the questions have the focus (WCAG 2.1.4).
+    this.#form.addEventListener("keydown", (event) => this.#key(event));
     player.canvas.addEventListener("click", (event) => this.#pointAt(event));
     player.canvas.addEventListener("pointermove", (event) => {
       const area = this.#form.hidden ? null : player.scene.areaAt(event.clientX, event.clientY);
@@ -82,7 +83,7 @@ export class Questions {
         this.#choose("guess", letters[key - 1], event.timeStamp);
         this.#firstDegree().focus();
       }
-    } else if (key === "ENTER" && !event.target.closest?.("a, button, input")) {
+    } else if (key === "ENTER" && event.target === this.#form) {
       event.preventDefault();
       this.#form.requestSubmit();
     }
@@ -96,6 +97,7 @@ export class Questions {
     if (!this.open) return;
     const area = this.#player.scene.areaAt(event.clientX, event.clientY);
     if (area) this.#choose("guess", area.letter, event.timeStamp);
+    this.#form.focus({ preventScroll: true });
   }
 
   #submit(event) {

@@ -156,6 +156,7 @@ function refused(error) {
   if (error.code === "wrong_step" || error.code === "place_returned") outbox.drop();
   const elsewhere = ["wrong_step", "place_returned", "moved"].includes(error.code);
   if (elsewhere || error.status === 401) return location.reload();
+  player.pause(performance.now());
   byId("trouble-detail").textContent = error.message;
   notice("trouble");
 }

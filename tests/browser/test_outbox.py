@@ -87,6 +87,23 @@ def test_a_refusal_is_said_plainly_and_can_be_tried_again(site: Site, visit: Vis
     assert site.trials()[0]["guess"] == "A"
 
 
+def test_whoever_came_back_too_late_is_dealt_anew_without_doing_anything(
+    site: Site, visit: Visit, guard: Guard
+):
+    guard.expected = ("409",)
+    page = visit()
+    walk.reach_trials(page)
+    late = '{"error": {"code": "place_returned", "message": "came too late"}}'
+    page.route("**/played", lambda route: route.fulfill(status=409, body=late), times=1)
+    with page.expect_navigation(url="**/trial"):
+        page.click("#play")
+    walk.play(page)
+    walk.stop(page)
+    walk.answer(page, "B", 5)
+    walk.round_is(page, 2)
+    assert len(site.trials()) == 1
+
+
 def test_whoever_gives_up_ends_at_a_page_of_their_own(site: Site, visit: Visit, guard: Guard):
     guard.expected = ("422",)
     page = visit()
