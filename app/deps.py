@@ -13,7 +13,7 @@ from app.errors import WrongStep
 from app.pages import Pages
 from app.repository import Record
 from app.sessions import participant_of
-from app.settings import Ending, Settings
+from app.settings import Ending
 from app.steps import ENDINGS, Step
 from app.study import Study
 
@@ -42,7 +42,6 @@ class AtAnotherStep(WrongStep):
 class Services:
     """What an app is made of, `app.state.services`."""
 
-    settings: Settings
     study: Study
     database: Database
     pages: Pages
@@ -83,14 +82,14 @@ def page(
         template,
         context or {},
         participant=participant.pseudonym if participant else None,
-        can_withdraw=participant is not None and at.settings.study_open,
+        can_withdraw=participant is not None and at.study.settings.study_open,
         status=status,
     )
 
 
 def recruiter(request: Request, ending: Ending) -> dict[str, str | None]:
     """The way back to the recruiter from an ending, where it has a code."""
-    settings = services(request).settings
+    settings = services(request).study.settings
     code = settings.codes.get(ending)
     return {"code": code, "url": settings.return_url.replace("{code}", code) if code else None}
 

@@ -28,7 +28,7 @@ def create_app(settings: Settings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         database = open_database(study)
-        app.state.services = Services(settings, study, database, pages)
+        app.state.services = Services(study, database, pages)
         yield
         database.close()
 
@@ -40,8 +40,8 @@ def create_app(settings: Settings) -> FastAPI:
         redoc_url=None,
         openapi_url=None,
     )
-    app.include_router(participant.router)
     app.router.routes.extend(trials_api.routes)
+    app.include_router(participant.router)
     app.mount(pages.static_root, static_app(), name="static")
     app.add_middleware(OwnPagesOnly, refuse=render_error)
     app.add_middleware(SecurityHeaders)

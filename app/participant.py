@@ -175,9 +175,9 @@ async def confirm_withdrawal(request: Request) -> Response:
 async def withdraw(request: Request) -> Response:
     """Delete everything about the participant and forget the browser."""
     at, token = services(request), token_of(request)
-    if not at.settings.study_open:
+    if not at.study.settings.study_open:
         raise WrongStep("The study is closed; please write to the researchers to withdraw.")
-    journal = at.settings.withdrawals_file
+    journal = at.study.settings.withdrawals_file
     await at.database.write(lambda c: enrolment.withdraw(c, token, journal))
     response = see("/withdrawn")
     response.headers["Clear-Site-Data"] = '"cookies", "storage"'
