@@ -112,7 +112,8 @@ export class Player {
       return;
     }
     this.#held = event;
-    const free = !event.target.closest?.("a, button, input, select, summary");
+    const inView = this.#button.offsetParent !== null;
+    const free = inView && !event.target.closest?.("a, button, input, select, summary");
     const pressed = (event.key === " " && (onButton || free)) || (event.key === "Enter" && onButton);
     if (!pressed || event.ctrlKey || event.metaKey || event.altKey) return;
     if (this.phase === "moving") {

@@ -18,6 +18,9 @@ def test_a_second_tab_is_told_and_may_take_over_where_the_first_one_was(site: Si
     second.get_by_role("button", name="Use this tab instead").click()
     walk.phase(second, "paused")
     expect(first.get_by_role("heading", name=told)).to_be_visible()
+    first.locator("#other-tab").focus()
+    first.keyboard.press("Space")
+    assert first.locator("#stage").get_attribute("data-phase") == "paused"
     second.click("#play")
     walk.phase(second, "moving")
     walk.stop(second)
