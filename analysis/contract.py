@@ -116,7 +116,7 @@ TRIALS = Table(
         Column(
             "confidence_latency_s",
             NUMBER,
-            "From the stop to the choice of the confidence that was sent; after a reload, from there.",
+            "From the stop to the choice of the rating that was sent; after a reload, from there.",
             "s",
             low=0,
         ),
