@@ -5,13 +5,14 @@ Each takes the connection of an open transaction; `database.write` commits it be
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from hashlib import sha256
 
 from sqlalchemy import Connection
 
 from analysis import correct, score
-from app import repository
+from app import VERSION, repository
 from app.errors import InvalidInput, PlaceReturned, WrongStep
-from app.event_log import log_message
+from app.event_log import log_message, note
 from app.repository import Record
 from app.schemas import Answered, Logged, Message, Played, Stopped
 from app.sessions import admitted, hashed
@@ -22,14 +23,25 @@ from policies import Stimulus
 
 @dataclass(frozen=True)
 class Standing:
-    """Where a participant is in the trials."""
+    """Where a participant is in the trials.
+
+    `ticket` says, to nobody but us, which dealing of which place this is; a trial that was begun
+    keeps the speed it was begun with.
+    """
 
     index: int
     phase: Phase
     stimulus: Stimulus
-    length_ms: int
+    ticket: str
+    step_ms: int
+    lead_in_ms: int
     position_ms: float = 0
     stop_time_ms: float | None = None
+
+    @property
+    def length_ms(self) -> int:
+        """Full motion of the animation, without lead-in."""
+        return self.stimulus.steps * self.step_ms
 
 
 @dataclass(frozen=True)
@@ -72,7 +84,9 @@ def standing(study: Study, participant: Record) -> Standing:
         index=participant.trial_index,
         phase=Phase.MOVING if participant.stopped_at is None else Phase.ASKING,
         stimulus=study.pool.stimuli[participant.stimulus],
-        length_ms=participant.length_ms,
+        ticket=_ticket(participant),
+        step_ms=participant.step_ms,
+        lead_in_ms=participant.lead_in_ms,
         position_ms=participant.position_ms,
         stop_time_ms=participant.stop_time_ms,
     )
@@ -84,18 +98,24 @@ def played(
     """The first frame was drawn: from the first trial's on, the place and its condition stay."""
 
     def begin(participant: Record, at: Standing) -> None:
+        if message.ticket != at.ticket:
+            raise PlaceReturned
+        device = message.device.model_dump(exclude={"reduced_motion"})
         if index == 1:
             repository.mark_place_played(connection, participant.id)
-            device = message.device.model_dump(exclude={"reduced_motion"})
             repository.change_participant(connection, participant.id, **device)
+        elif any(getattr(participant, name) != value for name, value in device.items()):
+            note(connection, study, participant, "device_changed", device)
         repository.add_trial(
             connection,
             participant.id,
             trial_index=index,
             stimulus=at.stimulus.id,
-            step_ms=study.settings.step_ms,
+            study_hash=study.hash,
+            app_version=VERSION,
+            step_ms=at.step_ms,
             length_ms=at.length_ms,
-            lead_in_ms=study.settings.lead_in_ms,
+            lead_in_ms=at.lead_in_ms,
             played_at=repository.now(),
             position_ms=0.0,
             reduced_motion=message.device.reduced_motion,
@@ -132,25 +152,33 @@ def answered(
         letters = [area.letter for area in study.pool.scenes[at.stimulus.maze].areas]
         if message.guess not in letters:
             raise InvalidInput(f"guess: expected one of {letters}, came {message.guess!r}")
-        facts = message.model_dump(exclude={"key", "events"})
+        facts = message.model_dump(exclude={"key", "events", "stop_time_ms"})
         repository.change_trial(
             connection, participant.id, index, answered_at=repository.now(), **facts
         )
-        if repository.count_answers(connection, participant.id) == study.trials:
+        if index == study.trials:
+            answers = repository.count_answers(connection, participant.id)
+            assert answers == study.trials, f"{answers} answers after the last trial"
             step = advance(Step(participant.step), Happening.ANSWERED_ALL)
             repository.change_participant(
                 connection, participant.id, step=step, finished_at=repository.now()
             )
 
-    return _once(connection, study, token, index, message, Phase.ASKING, keep_answer)
+    def is_of_this_stop(at: Standing) -> bool:
+        return message.stop_time_ms == at.stop_time_ms
+
+    return _once(
+        connection, study, token, index, message, Phase.ASKING, keep_answer, is_of_this_stop
+    )
 
 
-def logged(connection: Connection, token: str | None, message: Logged) -> None:
+def logged(connection: Connection, study: Study, token: str | None, message: Logged) -> None:
     """Events that no answer carries, and how far a trial that is broken off was seen."""
     participant = participant_at_trial(connection, token)
     index = message.trial_index
     this = index is not None and index == participant.trial_index
-    log_message(connection, participant, index, participant.stimulus if this else None, message)
+    stimulus = participant.stimulus if this else None
+    log_message(connection, study, participant, index, stimulus, message)
     if index and this and participant.stopped_at is None and message.position_ms is not None:
         seen = min(message.position_ms, participant.length_ms)
         if seen > participant.position_ms:
@@ -181,7 +209,13 @@ def score_trial(study: Study, trial: Record) -> TrialScore:
 
 def _ready(study: Study, participant: Record, index: int) -> Standing:
     stimulus = study.pool.stimulus(participant.scenarios[index - 1], participant.condition)
-    return Standing(index, Phase.READY, stimulus, study.length_ms(stimulus))
+    speed = (study.settings.step_ms, study.settings.lead_in_ms)
+    return Standing(index, Phase.READY, stimulus, _ticket(participant), *speed)
+
+
+def _ticket(participant: Record) -> str:
+    dealing = f"{participant.pseudonym}/{participant.number}/{participant.dealt_at.isoformat()}"
+    return sha256(dealing.encode()).hexdigest()[:16]
 
 
 def _once(
@@ -192,10 +226,15 @@ def _once(
     message: Message,
     due: Phase,
     happen: Callable[[Record, Standing], None],
+    applies: Callable[[Standing], bool] = lambda _at: True,
 ) -> Reply:
-    """Let something happen to a trial if it is due; a stale message gets what is stored."""
+    """Let something happen to a trial if it is due; a stale message gets what is stored.
+
+    The events that came with it are kept in any case, unless it is refused.
+    """
     participant = participant_at_trial(connection, token)
     if participant.step == Step.COMPLETED:
+        log_message(connection, study, participant, index, None, message)
         return Reply(repeated=True, done=True, standing=None)
     if participant.step != Step.TRIALS:
         raise WrongStep("The animations are not what comes next.")
@@ -203,15 +242,13 @@ def _once(
     order = list(Phase)
     if (index, order.index(due)) > (at.index, order.index(at.phase)):
         raise WrongStep(f"Expected trial {at.index} ({at.phase}), came {index} ({due}).")
-    if (index, due) != (at.index, at.phase):
+    stimulus = at.stimulus.id if index == at.index else None
+    log_message(connection, study, participant, index, stimulus, message)
+    if (index, due) != (at.index, at.phase) or not applies(at):
         return Reply(repeated=True, done=False, standing=at)
     happen(participant, at)
-    log_message(connection, participant, index, at.stimulus.id, message)
     if due != Phase.ASKING:
         return Reply(repeated=False, done=False, standing=None)
-    done = index == study.trials
-    return Reply(
-        repeated=False,
-        done=done,
-        standing=None if done else _ready(study, participant, index + 1),
-    )
+    if index == study.trials:
+        return Reply(repeated=False, done=True, standing=None)
+    return Reply(repeated=False, done=False, standing=_ready(study, participant, index + 1))

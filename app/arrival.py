@@ -7,13 +7,15 @@ the reply.
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import timedelta
 
 from sqlalchemy import Connection
 
 from app import VERSION, books, repository
-from app.errors import InvalidInput, Moved, NoSession, WrongStep
+from app.errors import InvalidInput, StudyClosed
+from app.repository import Record
 from app.sessions import begin_session, hashed
-from app.steps import Step
+from app.steps import ENDINGS, Step
 from app.study import Study
 
 LONGEST_ID = 100
@@ -37,9 +39,11 @@ class Link:
         """Read a link's query or the consent form's hidden fields; InvalidInput if impossible."""
         ids = [values.get(name) or None for name in _LINK_IDS]
         for name, value in zip(_LINK_IDS, ids, strict=True):
-            if value and (len(value) > LONGEST_ID or not value.isprintable()):
+            possible = value is None or (len(value) <= LONGEST_ID and value.isprintable())
+            if not possible or (value and "{{" in value):
                 raise InvalidInput(
-                    f"{name}: expected at most {LONGEST_ID} printable characters in the link."
+                    f"{name}: expected at most {LONGEST_ID} printable characters in the link, "
+                    "filled in by the recruiter."
                 )
         stream = next((pilot for pilot in STREAMS[1:] if values.get(pilot)), STREAMS[0])
         return cls(ids[0], ids[1], ids[2], stream)
@@ -55,44 +59,65 @@ class Link:
 class Known:
     """Somebody who opened the link again; `moves`: in a browser that has no session of theirs."""
 
-    step: Step
+    participant: Record
     moves: bool
 
 
 def find(connection: Connection, link: Link, token: str | None) -> Known | None:
-    """Who opens a link, by the recruiter's id or, without one, by the browser's session."""
-    here = repository.participant_in_session(connection, hashed(token))
-    if not link.recruiter_id:
-        if here and not here.current:
-            raise Moved
-        return Known(Step(here.step), moves=False) if here else None
-    known = repository.participant_recruited(connection, link.recruiter_id)
-    if known is None:
-        return None
-    stays = here is not None and here.current and here.id == known.id
-    return Known(Step(known.step), moves=not stays)
+    """Who opens a link: by the recruiter's id or, without one, by the browser's session.
 
-
-def come_back(connection: Connection, link: Link) -> str:
-    """Move the session of somebody known by a recruiter's id to this browser."""
-    known = link.recruiter_id and repository.participant_recruited(connection, link.recruiter_id)
-    if not known:
-        raise NoSession
-    return begin_session(connection, known, "came_back")
-
-
-def consent(connection: Connection, study: Study, arrival: str, link: Link, user_agent: str) -> str:
-    """Make the participant, once for each recruiter's id and each showing of the form.
-
-    Returns the token of their session.
+    A session that has ended, or that moved away, claims nobody who comes without an id: on a
+    shared computer that is somebody else.
     """
-    known = repository.participant_arrived(connection, arrival) or (
-        link.recruiter_id and repository.participant_recruited(connection, link.recruiter_id)
-    )
-    if known:
-        return begin_session(connection, known, "came_back")
+    here = repository.participant_in_session(connection, hashed(token))
+    if here is not None and not (here.current and here.stream == link.stream):
+        here = None
+    if link.recruiter_id is None:
+        stays = here is not None and here.step not in ENDINGS
+        return Known(here, moves=False) if here is not None and stays else None
+    known = repository.participant_recruited(connection, link.stream, link.recruiter_id)
+    return known and Known(known, moves=here is None or here.id != known.id)
+
+
+def come_back(connection: Connection, study: Study, known: Known, user_agent: str) -> str:
+    """Move a participant's session to this browser; returns its token.
+
+    An animation that was moving in the other browser counts as seen for as long as it can have
+    been: it goes on from there, and cannot be watched again from its start.
+    """
+    token = begin_session(connection, study, known.participant, "came_back", user_agent)
+    trial = repository.last_trial(connection, known.participant.id)
+    if trial is not None and trial.stopped_at is None:
+        since_ms = (repository.now() - trial.played_at) / timedelta(milliseconds=1)
+        repository.change_trial(
+            connection,
+            known.participant.id,
+            trial.trial_index,
+            position_ms=max(trial.position_ms, min(since_ms, trial.length_ms)),
+        )
+    return token
+
+
+def consent(
+    connection: Connection,
+    study: Study,
+    arrival: str,
+    link: Link,
+    token: str | None,
+    user_agent: str,
+) -> str | None:
+    """Make the participant, once for each recruiter's id, browser and showing of the form.
+
+    Returns the token of their session, or None when this browser has it already.
+    """
+    known = find(connection, link, token)
+    sent_before = repository.participant_arrived(connection, arrival)
+    if known is None and sent_before is not None:
+        known = Known(sent_before, moves=True)
+    if known is not None:
+        return come_back(connection, study, known, user_agent) if known.moves else None
     if not study.settings.study_open:
-        raise WrongStep("This study is closed; thank you for your interest.")
+        raise StudyClosed("This study is closed. Thank you for your interest.")
     participant = repository.add_participant(
         connection,
         pseudonym=secrets.token_hex(6),
@@ -108,12 +133,13 @@ def consent(connection: Connection, study: Study, arrival: str, link: Link, user
     if link.recruiter_id:
         repository.add_recruit(
             connection,
-            participant.id,
-            link.recruiter_id,
-            link.recruiter_study,
-            link.recruiter_session,
+            participant_id=participant.id,
+            stream=link.stream,
+            recruiter_id=link.recruiter_id,
+            recruiter_study=link.recruiter_study,
+            recruiter_session=link.recruiter_session,
         )
-    return begin_session(connection, participant, "consented")
+    return begin_session(connection, study, participant, "consented", user_agent)
 
 
 def decline(connection: Connection) -> None:

@@ -70,8 +70,6 @@ def all_trials(connection: Connection) -> Iterable[Record]:
             places.c.condition,
             participants.c.pseudonym,
             participants.c.stream,
-            participants.c.study_hash,
-            participants.c.app_version,
         )
         .join(participants, participants.c.id == trials.c.participant_id)
         .join(places, places.c.participant_id == participants.c.id)

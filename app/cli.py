@@ -47,7 +47,8 @@ def serve(
             uvicorn.Config(create_app(settings), log_level="warning", ws="none")
         )
         typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
-        typer.echo(f"The study is at http://{host}:{listener.getsockname()[1]}/")
+        shown = f"[{host}]" if ":" in host else host
+        typer.echo(f"The study is at http://{shown}:{listener.getsockname()[1]}/")
         server.run(sockets=[listener])
 
 

@@ -33,7 +33,8 @@ class Database:
 
     def __init__(self, url: str) -> None:
         self._write_engine = sqlite_engine(url, begin="BEGIN IMMEDIATE")
-        use_write_ahead_log(self._write_engine)
+        # Lets readers go on while the writer writes; the file remembers it.
+        run_pragma(self._write_engine, "journal_mode=WAL")
         self._read_engine = sqlite_engine(url, begin="BEGIN")
         self._reader = self._read_engine.connect()
         self._reading = Lock()
@@ -59,6 +60,10 @@ class Database:
     async def write(self, work: Work[T]) -> T:
         """Return what the function returned, once its transaction is on disk."""
         return await asyncio.wrap_future(self.submit(work))
+
+    def forget_deleted(self) -> None:
+        """Empty the write-ahead log, which still holds what was deleted from the database."""
+        run_pragma(self._write_engine, "wal_checkpoint(TRUNCATE)")
 
     def close(self) -> None:
         """Finish the queued writes and let go of the file."""
@@ -95,6 +100,9 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
     try:
         with connection.begin():
             for work, done in group:
+                # From here on nobody can cancel it; whoever gave up before is left out.
+                if not done.set_running_or_notify_cancel():
+                    continue
                 connection.exec_driver_sql("SAVEPOINT before_work")
                 try:
                     outcomes.append((done, work(connection), None))
@@ -105,7 +113,7 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
     except BaseException as failure:
         # SQLite keeps a transaction open whose COMMIT failed; SQLAlchemy takes it for ended.
         connection.connection.rollback()
-        outcomes = [(waiting.done, None, failure) for waiting in group]
+        outcomes = [(done, None, failure) for _, done in group if not done.cancelled()]
     for done, result, error in outcomes:
         if error is None:
             done.set_result(result)
@@ -121,7 +129,12 @@ def sqlite_engine(url: str, begin: str) -> Engine:
     def configure(connection: Any, _record: Any) -> None:
         # The driver must not begin transactions of its own: they are begun below, explicitly.
         connection.isolation_level = None
-        for pragma in ("synchronous=FULL", "foreign_keys=ON", f"busy_timeout={BUSY_MS}"):
+        for pragma in (
+            "synchronous=FULL",
+            "foreign_keys=ON",
+            "secure_delete=ON",
+            f"busy_timeout={BUSY_MS}",
+        ):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")
@@ -131,10 +144,10 @@ def sqlite_engine(url: str, begin: str) -> Engine:
     return engine
 
 
-def use_write_ahead_log(engine: Engine) -> None:
-    """Let readers go on while the writer writes; the file remembers it."""
+def run_pragma(engine: Engine, pragma: str) -> None:
+    """Run a PRAGMA that is not possible within a transaction."""
     connection = engine.raw_connection()
     try:
-        connection.cursor().execute("PRAGMA journal_mode=WAL")
+        connection.cursor().execute(f"PRAGMA {pragma}").fetchall()
     finally:
         connection.close()

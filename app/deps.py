@@ -29,6 +29,9 @@ PATHS = {
 }
 """Where each step's page is."""
 
+OWN_PAGE = PATHS[Step.COMPLETED]
+"""A page that sends everybody who is not there to their own."""
+
 
 class AtAnotherStep(WrongStep):
     """A page was asked for that is not the participant's; they are sent to theirs."""

@@ -6,12 +6,12 @@ Each takes the connection of an open transaction; `database.write` commits it be
 import os
 from collections.abc import Mapping
 from datetime import timedelta
-from pathlib import Path
 
 from sqlalchemy import Connection
 
 from app import books, repository
 from app.assignment import deal_block
+from app.errors import StudyClosed
 from app.event_log import note
 from app.questions import CONTROL_RIGHT
 from app.repository import Record
@@ -21,38 +21,42 @@ from app.study import Study
 
 
 def describe(
-    connection: Connection, token: str | None, answers: Mapping[str, str | int | None]
+    connection: Connection,
+    study: Study,
+    token: str | None,
+    answers: Mapping[str, str | int | None],
 ) -> None:
     """Keep what a participant said about themselves and go on."""
     participant = participant_of(connection, token)
-    _go_on(connection, participant, Happening.DESCRIBED)
+    _go_on(connection, study, participant, Happening.DESCRIBED)
     repository.add_demographics(connection, participant.id, answers)
 
 
-def finish_instructions(connection: Connection, token: str | None) -> None:
+def finish_instructions(connection: Connection, study: Study, token: str | None) -> None:
     """Go on from the instructions to the practice."""
-    _go_on(connection, participant_of(connection, token), Happening.INSTRUCTED)
+    _go_on(connection, study, participant_of(connection, token), Happening.INSTRUCTED)
 
 
 def answer_control(
-    connection: Connection, study: Study, token: str | None, answer: str | int | None
+    connection: Connection, study: Study, token: str | None, attempt: int, answer: str | int | None
 ) -> Step:
-    """Judge the control question; who passes is dealt a place in the same transaction.
+    """Judge an attempt at the control question; who passes is dealt a place with it.
 
-    Returns the step that follows; a question that has been settled is not judged again.
+    Returns the step that follows. An attempt that is not the one due was sent twice, and is not
+    judged again.
     """
     participant = participant_of(connection, token)
-    if participant.step != Step.PRACTICE:
+    if participant.step != Step.PRACTICE or attempt != participant.control_tries + 1:
         return Step(participant.step)
-    tries = participant.control_tries + 1
-    repository.change_participant(connection, participant.id, control_tries=tries)
-    note(connection, participant, "control_answered", {"answer": answer, "try": tries})
-    outcome = judge_control(answer == CONTROL_RIGHT, tries)
+    repository.change_participant(connection, participant.id, control_tries=attempt)
+    told = {"answer": answer, "attempt": attempt}
+    note(connection, study, participant, "control_answered", told)
+    outcome = judge_control(answer == CONTROL_RIGHT, attempt)
     if outcome is None:
         return Step.PRACTICE
     if outcome == Happening.PASSED_CONTROL:
         deal(connection, study, participant)
-    return _go_on(connection, participant, outcome)
+    return _go_on(connection, study, participant, outcome)
 
 
 def has_place(connection: Connection, participant: Record) -> bool:
@@ -73,41 +77,47 @@ def deal(connection: Connection, study: Study, participant: Record) -> Record:
         place = repository.free_place(connection, participant.stream)
         assert place is not None
     repository.give_place(connection, place, participant.id)
-    note(connection, participant, "dealt", {"place": place.number})
+    note(connection, study, participant, "dealt", {"place": place.number})
     return place
 
 
-def fail(connection: Connection, token: str | None) -> None:
+def fail(connection: Connection, study: Study, token: str | None) -> None:
     """End for a participant for whom the study does not work technically."""
     participant = participant_of(connection, token)
-    _go_on(connection, participant, Happening.BROKE)
+    _go_on(connection, study, participant, Happening.BROKE)
     repository.free_unplayed_place_of(connection, participant.id)
 
 
-def withdraw(connection: Connection, token: str | None, journal: Path) -> None:
+def withdraw(connection: Connection, study: Study, token: str | None) -> None:
     """Delete all that is known of a participant, and note it outside the database."""
     participant = participant_of(connection, token)
+    if not study.settings.study_open:
+        raise StudyClosed("The study is closed. To withdraw, please write to the researchers.")
     # Noted before the commit: a withdrawal that is half done is done at the next start.
-    with journal.open("a", encoding="ascii") as file:
-        file.write(f"{participant.pseudonym}\n")
-        file.flush()
-        os.fsync(file.fileno())
+    with study.settings.withdrawals_file.open("a", encoding="ascii") as journal:
+        # On a line of its own even if a crash cut the last one short.
+        journal.write(f"\n{participant.pseudonym}\n")
+        journal.flush()
+        os.fsync(journal.fileno())
     _forget(connection, participant)
 
 
-def withdraw_again(connection: Connection, journal: Path) -> None:
+def withdraw_again(connection: Connection, study: Study) -> None:
     """Drop those who withdrew from a database that was restored from an older backup."""
-    for pseudonym in journal.read_text(encoding="ascii").split() if journal.exists() else ():
+    with study.settings.withdrawals_file.open("a+", encoding="ascii", errors="replace") as journal:
+        journal.seek(0)
+        pseudonyms = journal.read().split()
+    for pseudonym in pseudonyms:
         participant = repository.participant_named(connection, pseudonym)
         if participant and participant.step != Step.WITHDRAWN:
             _forget(connection, participant)
 
 
-def _go_on(connection: Connection, participant: Record, happening: Happening) -> Step:
+def _go_on(connection: Connection, study: Study, participant: Record, happening: Happening) -> Step:
     step = advance(Step(participant.step), happening)
     ended = {"finished_at": repository.now()} if step in ENDINGS else {}
     repository.change_participant(connection, participant.id, step=step, **ended)
-    note(connection, participant, happening.value, {})
+    note(connection, study, participant, happening.value, {})
     return step
 
 

@@ -4,6 +4,7 @@ AppError (carries an HTTP status and a code; one handler renders it as page or J
 ├── NoSession          401  the browser has no session, or one that has ended
 ├── Moved              409  the session went on in another browser
 ├── WrongStep          409  what was sent belongs to a step the participant is not at
+├── StudyClosed        409  the study takes no new participants, and nobody out, any more
 ├── PlaceReturned      409  the place went to somebody else before its first frame was played
 ├── InvalidInput       422  what was sent cannot be: which field, expected, came
 ├── TooLarge           413  the request is larger than any page of ours sends
@@ -27,7 +28,9 @@ class NoSession(AppError):
     code = "no_session"
 
     def __init__(self) -> None:
-        super().__init__("Please open the study through your invitation link.")
+        super().__init__(
+            "Please open the study through your invitation link, and allow its cookie."
+        )
 
 
 class Moved(AppError):
@@ -45,6 +48,13 @@ class WrongStep(AppError):
 
     status = 409
     code = "wrong_step"
+
+
+class StudyClosed(AppError):
+    """The study takes no new participants, and nobody out, any more."""
+
+    status = 409
+    code = "study_closed"
 
 
 class PlaceReturned(AppError):

@@ -8,10 +8,15 @@ from sqlalchemy import Connection
 from app import VERSION, repository
 from app.repository import Record
 from app.schemas import Message
+from app.study import Study
 
 
 def note(
-    connection: Connection, participant: Record, what: str, details: Mapping[str, object]
+    connection: Connection,
+    study: Study,
+    participant: Record,
+    what: str,
+    details: Mapping[str, object],
 ) -> None:
     """Log something that happened on the server."""
     repository.log(
@@ -24,7 +29,7 @@ def note(
                 "type": what,
                 "server_time": repository.now(),
                 "details": details,
-                "study_hash": participant.study_hash,
+                "study_hash": study.hash,
                 "app_version": VERSION,
             }
         ],
@@ -33,6 +38,7 @@ def note(
 
 def log_message(
     connection: Connection,
+    study: Study,
     participant: Record,
     index: int | None,
     stimulus: str | None,
@@ -53,7 +59,7 @@ def log_message(
                 "client_time_ms": event.client_time_ms,
                 "details": event.details,
                 "stimulus": stimulus,
-                "study_hash": participant.study_hash,
+                "study_hash": study.hash,
                 "app_version": VERSION,
             }
             for ordinal, event in enumerate(message.events)

@@ -19,8 +19,7 @@ def open_database(study: Study) -> Database:
     database = Database(settings.database_url)
     try:
         database.submit(lambda c: _open_books(c, study)).result()
-        journal = settings.withdrawals_file
-        database.submit(lambda c: enrolment.withdraw_again(c, journal)).result()
+        database.submit(lambda c: enrolment.withdraw_again(c, study)).result()
     except BaseException:
         database.close()
         raise
@@ -36,9 +35,14 @@ def _open_books(connection: Connection, study: Study) -> None:
             f"{found[:12] if found else found}; name a new file in GOALGUESS_DATABASE_URL"
         )
     books.register_study(connection, study.hash, study.definition, study.pool.hash)
-    seed = study.settings.seed
-    books.draw_from(
-        connection,
-        seed=secrets.randbits(32) if seed is None else seed,
-        block_size=study.settings.block_size,
-    )
+    settings = study.settings
+    seed = secrets.randbits(32) if settings.seed is None else settings.seed
+    books.draw_from(connection, seed, settings.block_size)
+    drawn = books.drawn_from(connection)
+    for name, kept in (("seed", drawn.seed), ("block_size", drawn.block_size)):
+        wanted = getattr(settings, name)
+        if name in settings.model_fields_set and wanted not in (None, kept):
+            raise DatabaseMismatch(
+                f"GOALGUESS_{name.upper()}: expected {kept}, with which this database was begun, "
+                f"came {wanted}; leave it out, or name a new file in GOALGUESS_DATABASE_URL"
+            )

@@ -1,6 +1,7 @@
 """The participant's pages: parse, call, reply."""
 
 import secrets
+from contextlib import suppress
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response
@@ -17,9 +18,9 @@ from app.deps import (
     services,
     token_of,
 )
-from app.errors import InvalidInput, WrongStep
+from app.errors import InvalidInput, NoSession, StudyClosed
 from app.questions import ABOUT_YOU, CONTROL, answers
-from app.steps import CONTROL_TRIES, ENDINGS, Step
+from app.steps import ENDINGS, Step
 from app.study import Study
 
 router = APIRouter(include_in_schema=False)
@@ -31,23 +32,26 @@ BEST_SCORE_OF_TRIAL = 10
 async def arrive(request: Request) -> Response:
     """The invitation link: whoever is known goes on where they were."""
     link = Link.read(request.query_params)
-    at = services(request)
-    token = token_of(request)
+    at, token = services(request), token_of(request)
     known = await at.database.read(lambda c: arrival.find(c, link, token))
+    if known is None and not at.study.settings.study_open:
+        raise StudyClosed("This study is closed. Thank you for your interest.")
     if known is None:
         fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
         return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
-    if known.moves:
-        token = await at.database.write(lambda c: arrival.come_back(c, link))
-        return see(PATHS[known.step], token, secure=request.url.scheme == "https")
-    return see(PATHS[known.step])
+    path = PATHS[Step(known.participant.step)]
+    if not known.moves:
+        return see(path)
+    agent = _user_agent(request)
+    token = await at.database.write(lambda c: arrival.come_back(c, at.study, known, agent))
+    return see(path, token, secure=request.url.scheme == "https")
 
 
 @router.post("/consent")
 async def consent(request: Request) -> Response:
     """Yes makes the participant; no is only counted."""
     form = await _form(request)
-    at = services(request)
+    at, old_token, agent = services(request), token_of(request), _user_agent(request)
     if form.get("decision") != "yes":
         await at.database.write(arrival.decline)
         return see("/no-consent")
@@ -55,8 +59,9 @@ async def consent(request: Request) -> Response:
     if not 16 <= len(nonce) <= 64:
         raise InvalidInput("arrival: expected the hidden field of the consent page.")
     link = Link.read(form)
-    agent = request.headers.get("user-agent", "")[:400]
-    token = await at.database.write(lambda c: arrival.consent(c, at.study, nonce, link, agent))
+    token = await at.database.write(
+        lambda c: arrival.consent(c, at.study, nonce, link, old_token, agent)
+    )
     return see("/about-you", token, secure=request.url.scheme == "https")
 
 
@@ -83,8 +88,8 @@ async def describe(request: Request) -> Response:
     if errors:
         context = {"questions": ABOUT_YOU, "answers": form, "errors": errors}
         return page(request, "about_you.html", context, participant, status=422)
-    token = token_of(request)
-    await services(request).database.write(lambda c: enrolment.describe(c, token, given))
+    at, token = services(request), token_of(request)
+    await at.database.write(lambda c: enrolment.describe(c, at.study, token, given))
     return see("/instructions")
 
 
@@ -98,8 +103,8 @@ async def instructions(request: Request) -> Response:
 @router.post("/instructions")
 async def finish_instructions(request: Request) -> Response:
     """Read and understood."""
-    token = token_of(request)
-    await services(request).database.write(lambda c: enrolment.finish_instructions(c, token))
+    at, token = services(request), token_of(request)
+    await at.database.write(lambda c: enrolment.finish_instructions(c, at.study, token))
     return see("/practice")
 
 
@@ -109,7 +114,7 @@ async def practice(request: Request) -> Response:
     participant = await participant_at(request, Step.PRACTICE)
     context = {
         "question": CONTROL,
-        "tries_left": CONTROL_TRIES - participant.control_tries,
+        "attempt": participant.control_tries + 1,
         "wrong": participant.control_tries > 0,
     }
     return page(request, "practice.html", context, participant)
@@ -121,10 +126,12 @@ async def answer_control(request: Request) -> Response:
     form = await _form(request)
     at, token = services(request), token_of(request)
     try:
-        answer = CONTROL.answer(form)
+        attempt, answer = int(form.get("attempt", "")), CONTROL.answer(form)
     except ValueError:
         return see("/practice")
-    step = await at.database.write(lambda c: enrolment.answer_control(c, at.study, token, answer))
+    step = await at.database.write(
+        lambda c: enrolment.answer_control(c, at.study, token, attempt, answer)
+    )
     return see(PATHS[step])
 
 
@@ -159,8 +166,8 @@ async def end(request: Request) -> Response:
 @router.post("/failed")
 async def fail(request: Request) -> Response:
     """The study does not work for this participant."""
-    token = token_of(request)
-    await services(request).database.write(lambda c: enrolment.fail(c, token))
+    at, token = services(request), token_of(request)
+    await at.database.write(lambda c: enrolment.fail(c, at.study, token))
     return see("/end")
 
 
@@ -175,10 +182,10 @@ async def confirm_withdrawal(request: Request) -> Response:
 async def withdraw(request: Request) -> Response:
     """Delete everything about the participant and forget the browser."""
     at, token = services(request), token_of(request)
-    if not at.study.settings.study_open:
-        raise WrongStep("The study is closed; please write to the researchers to withdraw.")
-    journal = at.study.settings.withdrawals_file
-    await at.database.write(lambda c: enrolment.withdraw(c, token, journal))
+    # Without a session it has been done already: the button was pressed twice.
+    with suppress(NoSession):
+        await at.database.write(lambda c: enrolment.withdraw(c, at.study, token))
+        at.database.forget_deleted()
     response = see("/withdrawn")
     response.headers["Clear-Site-Data"] = '"cookies", "storage"'
     return response
@@ -190,6 +197,10 @@ async def withdrawn(request: Request) -> Response:
     return page(request, "withdrawn.html", {"recruiter": recruiter(request, "withdrawn")})
 
 
+def _user_agent(request: Request) -> str:
+    return request.headers.get("user-agent", "")[:400]
+
+
 async def _form(request: Request) -> dict[str, str]:
     async with request.form(max_files=0, max_fields=50) as form:
         return {name: value for name, value in form.items() if isinstance(value, str)}
@@ -197,8 +208,8 @@ async def _form(request: Request) -> dict[str, str]:
 
 def _shown(study: Study, one: TrialScore) -> dict[str, object]:
     """A finished trial with its small picture: what was seen of the path, and the rest."""
-    playback = study.playback(one.stimulus)
-    path = playback.pop("path")
+    picture = study.picture(one.stimulus)
+    path = picture.pop("path")
     return {
         "index": one.index,
         "correct": one.correct,
@@ -208,7 +219,7 @@ def _shown(study: Study, one: TrialScore) -> dict[str, object]:
         "length_s": one.length_s,
         "score": one.score,
         "picture": {
-            **playback,
+            **picture,
             "seen": path[: one.steps_seen + 1],
             "rest": path[one.steps_seen + 1 :],
         },

@@ -43,8 +43,8 @@ class Question:
             return self._number(given)
         if self.kind == "choice" and given not in {option.value for option in self.options}:
             raise ValueError("Please choose one of the answers shown.")
-        if len(given) > LONGEST_TEXT:
-            raise ValueError(f"Please use at most {LONGEST_TEXT} characters.")
+        if len(given) > LONGEST_TEXT or not given.isprintable():
+            raise ValueError(f"Please use at most {LONGEST_TEXT} characters, on one line.")
         return given
 
     def _number(self, given: str) -> int:

@@ -46,12 +46,12 @@ def participant_in_session(connection: Connection, token_hash: str) -> Record | 
     return connection.execute(_IN_SESSION, {"token_hash": token_hash}).one_or_none()
 
 
-def participant_recruited(connection: Connection, recruiter_id: str) -> Record | None:
-    """The participant with a recruiter's id."""
+def participant_recruited(connection: Connection, stream: str, recruiter_id: str) -> Record | None:
+    """The participant of a stream with a recruiter's id."""
     return connection.execute(
         select(participants)
         .join(recruits, recruits.c.participant_id == participants.c.id)
-        .where(recruits.c.recruiter_id == recruiter_id)
+        .where(recruits.c.stream == stream, recruits.c.recruiter_id == recruiter_id)
     ).one_or_none()
 
 
@@ -74,22 +74,9 @@ def add_participant(connection: Connection, **values: Any) -> Record:
     return connection.execute(insert(participants).values(**values).returning(participants)).one()
 
 
-def add_recruit(
-    connection: Connection,
-    participant_id: int,
-    recruiter_id: str,
-    study: str | None,
-    session: str | None,
-) -> None:
+def add_recruit(connection: Connection, **values: Any) -> None:
     """Keep the recruiter's ids of a participant."""
-    connection.execute(
-        insert(recruits).values(
-            participant_id=participant_id,
-            recruiter_id=recruiter_id,
-            recruiter_study=study,
-            recruiter_session=session,
-        )
-    )
+    connection.execute(insert(recruits).values(**values))
 
 
 def begin_session(connection: Connection, participant_id: int, token_hash: str) -> None:
@@ -217,7 +204,13 @@ _AT_TRIAL = (
         sessions.c.current,
         places.c.condition,
         places.c.scenarios,
-        *(column for column in _last.c if column.name != "participant_id"),
+        places.c.number,
+        places.c.dealt_at,
+        *(
+            column
+            for column in _last.c
+            if column.name not in participants.c and column.name != "participant_id"
+        ),
     )
     .join(sessions, sessions.c.participant_id == participants.c.id)
     .outerjoin(places, places.c.participant_id == participants.c.id)
@@ -238,6 +231,12 @@ _AT_TRIAL = (
 def participant_at_trial(connection: Connection, token_hash: str) -> Record | None:
     """As `participant_in_session`, with their place and the trial they played last, if any."""
     return connection.execute(_AT_TRIAL, {"token_hash": token_hash}).one_or_none()
+
+
+def last_trial(connection: Connection, participant_id: int) -> Record | None:
+    """The trial a participant played last."""
+    played = trials_of(connection, participant_id)
+    return played[-1] if played else None
 
 
 def trials_of(connection: Connection, participant_id: int) -> Sequence[Record]:

@@ -1,8 +1,9 @@
 """What the trial page sends, as pydantic models that refuse whatever cannot be."""
 
+import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 Key = Annotated[str, Field(min_length=8, max_length=64, pattern=r"^[A-Za-z0-9-]+$")]
 Count = Annotated[int, Field(ge=0, le=1_000_000)]
@@ -25,6 +26,12 @@ EventType = Literal[
 ]
 
 
+def _json(details: dict[str, Any]) -> dict[str, Any]:
+    """Refuse NaN and infinity, which the parser lets pass and no other reader of JSON does."""
+    json.dumps(details, allow_nan=False)
+    return details
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -34,7 +41,7 @@ class LoggedEvent(_Strict):
 
     type: EventType
     client_time_ms: Milliseconds
-    details: dict[str, Any] = {}
+    details: Annotated[dict[str, Any], AfterValidator(_json)] = {}
 
 
 class Message(_Strict):
@@ -56,8 +63,9 @@ class Device(_Strict):
 
 
 class Played(Message):
-    """The first frame in motion was drawn."""
+    """The first frame in motion was drawn; `ticket` as it came with the trial."""
 
+    ticket: Annotated[str, Field(max_length=64)]
     device: Device
 
 
@@ -74,8 +82,9 @@ class Stopped(Message):
 
 
 class Answered(Message):
-    """Area and confidence were chosen."""
+    """Area and confidence were chosen, having stopped at `stop_time_ms`."""
 
+    stop_time_ms: Milliseconds
     guess: Annotated[str, Field(pattern=r"^[A-Z]$")]
     confidence: Annotated[int, Field(ge=1, le=7)]
     guess_latency_ms: Milliseconds
@@ -85,5 +94,5 @@ class Answered(Message):
 class Logged(Message):
     """Events that no answer carries, sent when somebody leaves the page."""
 
-    trial_index: Annotated[int, Field(ge=1)] | None = None
+    trial_index: Annotated[int, Field(ge=1, le=1000)] | None = None
     position_ms: Milliseconds | None = None

@@ -9,6 +9,7 @@ from app import repository
 from app.errors import Moved, NoSession
 from app.event_log import note
 from app.repository import Record
+from app.study import Study
 
 
 def hashed(token: str | None) -> str:
@@ -30,9 +31,11 @@ def admitted(found: Record | None) -> Record:
     return found
 
 
-def begin_session(connection: Connection, participant: Record, what: str) -> str:
+def begin_session(
+    connection: Connection, study: Study, participant: Record, what: str, user_agent: str
+) -> str:
     """Make a browser the participant's current one; returns its token and logs what led to it."""
     token = secrets.token_urlsafe(32)
     repository.begin_session(connection, participant.id, hashed(token))
-    note(connection, participant, what, {})
+    note(connection, study, participant, what, {"user_agent": user_agent})
     return token

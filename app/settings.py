@@ -1,5 +1,6 @@
 """Settings, each read from a variable GOALGUESS_<NAME>."""
 
+import os
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
@@ -11,13 +12,15 @@ from sqlalchemy.exc import ArgumentError
 
 from app.errors import InvalidInput
 
+PREFIX = "GOALGUESS_"
+
 Ending = Literal["completed", "no_consent", "screened_out", "failed", "withdrawn"]
 
 
 class Settings(BaseSettings):
     """All settings with their defaults; `goalguess serve --help` points to README's table."""
 
-    model_config = SettingsConfigDict(env_prefix="GOALGUESS_", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
     database_url: str = Field(
         "sqlite:///goalguess.sqlite", description="Where answers are stored: a SQLite file."
@@ -30,21 +33,21 @@ class Settings(BaseSettings):
     study_open: bool = Field(True, description="Whether new participants may begin.")
     researchers: str = Field("", description="Who runs the study, as the consent page says it.")
     contact: str = Field("", description="How participants reach the researchers.")
-    seed: Annotated[int, Field(ge=0)] | None = Field(
+    seed: Annotated[int, Field(ge=0, lt=2**63)] | None = Field(
         None,
         description="Seed of the dealing of conditions and lists, stored when the database is "
         "made (default: drawn at random then).",
     )
-    block_size: Annotated[int, Field(ge=2, multiple_of=2)] = Field(
+    block_size: Annotated[int, Field(ge=2, le=1000, multiple_of=2)] = Field(
         4, description="Places in a block; each block holds both conditions equally often."
     )
-    place_minutes: Annotated[float, Field(gt=0)] = Field(
+    place_minutes: Annotated[float, Field(gt=0, le=525_600)] = Field(
         30, description="A place whose first frame is not played for this long is dealt again."
     )
-    step_ms: Annotated[int, Field(ge=20)] = Field(
+    step_ms: Annotated[int, Field(ge=20, le=60_000)] = Field(
         1000, description="Duration of one maze step, ms."
     )
-    lead_in_ms: Annotated[int, Field(ge=0)] = Field(
+    lead_in_ms: Annotated[int, Field(ge=0, le=60_000)] = Field(
         1500, description="Still picture before the motion, ms; not counted as time."
     )
     return_url: str = Field(
@@ -64,12 +67,13 @@ class Settings(BaseSettings):
             url = make_url(self.database_url)
         except ArgumentError:
             url = None
-        if url is None or url.get_backend_name() != "sqlite" or not url.database:
+        named = url is not None and url.drivername in ("sqlite", "sqlite+pysqlite")
+        if url is None or not named or url.database in (None, "", ":memory:"):
             raise InvalidInput(
                 "GOALGUESS_DATABASE_URL: expected a SQLite file like "
                 f"sqlite:///goalguess.sqlite, came {self.database_url!r}"
             )
-        return Path(url.database)
+        return Path(str(url.database))
 
     @property
     def withdrawals_file(self) -> Path:
@@ -80,13 +84,16 @@ class Settings(BaseSettings):
 
 def load_settings() -> Settings:
     """The settings of this process's environment; InvalidInput names the variable at fault."""
+    known = {f"{PREFIX}{name.upper()}" for name in Settings.model_fields}
+    unknown = sorted(name for name in os.environ if name.startswith(PREFIX) and name not in known)
+    if unknown:
+        raise InvalidInput(f"{unknown[0]}: expected one of {', '.join(sorted(known))}")
     try:
         return Settings()
     except SettingsError as error:
-        raise InvalidInput(f"GOALGUESS_*: expected JSON, {error}") from error
+        raise InvalidInput(f"{PREFIX}CODES: expected JSON, {error}") from error
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        name = "_".join(str(part) for part in first["loc"]).upper()
-        raise InvalidInput(
-            f"GOALGUESS_{name}: {first['msg']}, came {str(first['input'])!r}"
-        ) from error
+        name, *key = (str(part) for part in first["loc"])
+        where = f"{PREFIX}{name.upper()}" + (f", {key[0]!r}" if key else "")
+        raise InvalidInput(f"{where}: {first['msg']}, came {str(first['input'])!r}") from error

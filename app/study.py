@@ -94,6 +94,14 @@ class Study:
 
     def playback(self, stimulus: Stimulus) -> dict[str, Any]:
         """What the page needs to play a stimulus, and nothing that names condition or goal."""
+        return {
+            **self.picture(stimulus),
+            "step_ms": self.settings.step_ms,
+            "lead_in_ms": self.settings.lead_in_ms,
+        }
+
+    def picture(self, stimulus: Stimulus) -> dict[str, Any]:
+        """The maze, its areas and the path through it, cells as (row, column)."""
         scene = self.pool.scenes[stimulus.maze]
         return {
             "rows": scene.rows,
@@ -109,8 +117,6 @@ class Study:
                 for area in scene.areas
             ],
             "path": [divmod(cell, scene.cols) for cell in stimulus.cells],
-            "step_ms": self.settings.step_ms,
-            "lead_in_ms": self.settings.lead_in_ms,
         }
 
 

@@ -95,9 +95,11 @@ recruits = Table(
     "recruits",
     metadata,
     _participant(primary_key=True),
-    Column("recruiter_id", String, nullable=False, unique=True),
+    Column("stream", String, nullable=False),
+    Column("recruiter_id", String, nullable=False),
     Column("recruiter_study", String),
     Column("recruiter_session", String),
+    UniqueConstraint("stream", "recruiter_id"),
 )
 """The recruiter's ids, apart from everything that is exported."""
 
@@ -143,6 +145,8 @@ trials = Table(
     _participant(primary_key=True),
     Column("trial_index", Integer, primary_key=True),
     Column("stimulus", String, nullable=False),
+    Column("study_hash", String, ForeignKey("studies.hash"), nullable=False),
+    Column("app_version", String, nullable=False),
     Column("step_ms", Integer, nullable=False),
     Column("length_ms", Integer, nullable=False),
     Column("lead_in_ms", Integer, nullable=False),
@@ -183,6 +187,8 @@ events = Table(
     Column("study_hash", String, nullable=False),
     Column("app_version", String, nullable=False),
     UniqueConstraint("participant_id", "message_key", "ordinal"),
+    # Numbers of deleted events are never given again: an export's ids stay what they were.
+    sqlite_autoincrement=True,
 )
 """The log, append-only. A message delivered twice is logged once: see its unique constraint."""
 

@@ -48,7 +48,7 @@ async def trial(request: Request) -> Response:
 async def log(request: Request) -> Response:
     """Events that no answer carries."""
     message, at, token = await _message(request, Logged), services(request), token_of(request)
-    await at.database.write(lambda c: answering.logged(c, token, message))
+    await at.database.write(lambda c: answering.logged(c, at.study, token, message))
     return as_json({})
 
 
@@ -96,7 +96,12 @@ def _state(study: Study, standing: Standing | None) -> dict[str, Any]:
             "phase": standing.phase,
             "position_ms": standing.position_ms,
             "stop_time_ms": standing.stop_time_ms,
-            "playback": study.playback(standing.stimulus),
+            "ticket": standing.ticket,
+            "playback": {
+                **study.picture(standing.stimulus),
+                "step_ms": standing.step_ms,
+                "lead_in_ms": standing.lead_in_ms,
+            },
         },
         "next": None,
     }

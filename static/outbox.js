@@ -55,8 +55,9 @@ export class Outbox {
     return drained;
   }
 
-  /** Forget what is queued: the server has moved on and will never take it. */
+  /** Forget what is queued, but not its events: the server has moved on and will never take it. */
   drop() {
+    this.#events.unshift(...this.#queue.flatMap((message) => message.body.events));
     this.#queue = [];
     this.#keep();
   }

@@ -3,6 +3,7 @@
 import { Clock, FrameMeter } from "./clock.js";
 import { Scene } from "./scene.js";
 
+const FROZEN_MS = 1500; // a longer gap between frames showed a still picture
 const SETTLE_MS = 350; // a double click on what was here before must not hit what is here now
 const WORDS = {
   ready: ["Play", "Press Stop as soon as you know where it is heading."],
@@ -21,6 +22,7 @@ export class Player {
   #playback = null;
   #countFrom = null;
   #step = 0;
+  #seen = 0; // time of the last frame
   #held = null; // the keydown of a key that is down
   #request = 0;
   #settling = 0;
@@ -143,6 +145,9 @@ export class Player {
 
   #frame = (time) => {
     if (this.phase !== "counting" && this.phase !== "moving") return;
+    const seen = this.#seen;
+    this.#seen = time;
+    if (this.phase === "moving" && time - seen > FROZEN_MS) return this.pause(seen);
     this.meter.frame(time, this.phase === "moving");
     if (this.phase === "counting") {
       this.#countFrom ??= time;

@@ -15,7 +15,11 @@ byId("again").addEventListener("click", () => turnTo("practice"));
 if (!byId("practice").hidden) begin();
 
 async function begin() {
-  playback ??= await patiently("/api/practice");
+  try {
+    playback ??= await patiently("/api/practice");
+  } catch {
+    return location.reload(); // no longer at the practice: the server leads to the page that is due
+  }
   questions.close();
   player.load(playback);
 }

@@ -107,6 +107,7 @@ function played(time) {
   keepReached(time);
   outbox.log("played", {}, time);
   tell("played", {
+    ticket: trial.ticket,
     device: {
       viewport_width: innerWidth,
       viewport_height: innerHeight,
@@ -122,6 +123,7 @@ async function stopped(time) {
   const { clock, meter } = player;
   const stop_time_ms = tenths(clock.stoppedMs);
   const { index } = trial;
+  trial.stop_time_ms = stop_time_ms;
   questions.ask(trial.playback, time);
   say("Stopped. Which area is the robot heading for?");
   outbox.log("stopped", { stop_time_ms }, time);
@@ -143,7 +145,7 @@ async function stopped(time) {
 async function answered(answer, time) {
   byId("next").setAttribute("aria-busy", "true");
   outbox.log("answered", {}, time);
-  const reply = await tell("answered", answer);
+  const reply = await tell("answered", { ...answer, stop_time_ms: trial.stop_time_ms });
   byId("next").removeAttribute("aria-busy");
   show(reply);
   if (!reply.trial) return;

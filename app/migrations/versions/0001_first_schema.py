@@ -93,6 +93,7 @@ def upgrade() -> None:
             "ordinal",
             name=op.f("uq_events_participant_id_message_key_ordinal"),
         ),
+        sqlite_autoincrement=True,
     )
     op.create_table(
         "places",
@@ -113,6 +114,7 @@ def upgrade() -> None:
     op.create_table(
         "recruits",
         sa.Column("participant_id", sa.Integer(), nullable=False),
+        sa.Column("stream", sa.String(), nullable=False),
         sa.Column("recruiter_id", sa.String(), nullable=False),
         sa.Column("recruiter_study", sa.String(), nullable=True),
         sa.Column("recruiter_session", sa.String(), nullable=True),
@@ -120,7 +122,7 @@ def upgrade() -> None:
             ["participant_id"], ["participants.id"], name=op.f("fk_recruits_participant_id")
         ),
         sa.PrimaryKeyConstraint("participant_id", name=op.f("pk_recruits")),
-        sa.UniqueConstraint("recruiter_id", name=op.f("uq_recruits_recruiter_id")),
+        sa.UniqueConstraint("stream", "recruiter_id", name=op.f("uq_recruits_stream_recruiter_id")),
     )
     op.create_table(
         "sessions",
@@ -141,6 +143,8 @@ def upgrade() -> None:
         sa.Column("participant_id", sa.Integer(), nullable=False),
         sa.Column("trial_index", sa.Integer(), nullable=False),
         sa.Column("stimulus", sa.String(), nullable=False),
+        sa.Column("study_hash", sa.String(), nullable=False),
+        sa.Column("app_version", sa.String(), nullable=False),
         sa.Column("step_ms", sa.Integer(), nullable=False),
         sa.Column("length_ms", sa.Integer(), nullable=False),
         sa.Column("lead_in_ms", sa.Integer(), nullable=False),
@@ -161,6 +165,9 @@ def upgrade() -> None:
         sa.Column("confidence_latency_ms", sa.Float(), nullable=True),
         sa.ForeignKeyConstraint(
             ["participant_id"], ["participants.id"], name=op.f("fk_trials_participant_id")
+        ),
+        sa.ForeignKeyConstraint(
+            ["study_hash"], ["studies.hash"], name=op.f("fk_trials_study_hash")
         ),
         sa.PrimaryKeyConstraint("participant_id", "trial_index", name=op.f("pk_trials")),
     )
