@@ -12,15 +12,13 @@ from datetime import timedelta
 from sqlalchemy import Connection
 
 from app import VERSION, books, repository
-from app.errors import InvalidInput, StudyClosed
+from app.errors import CLOSED_TO_ARRIVALS, InvalidInput, StudyClosed
 from app.repository import Record
 from app.sessions import begin_session, hashed
 from app.steps import ENDINGS, Step
-from app.study import Study
+from app.study import PARTICIPANT, PREVIEW, SIMULATED, Study
 
 LONGEST_ID = 100
-STREAMS = ("participant", "preview", "simulated")
-"""Real participants and pilots are dealt from streams of their own and never mixed."""
 
 _LINK_IDS = ("PROLIFIC_PID", "STUDY_ID", "SESSION_ID")
 
@@ -32,7 +30,7 @@ class Link:
     recruiter_id: str | None = None
     recruiter_study: str | None = None
     recruiter_session: str | None = None
-    stream: str = STREAMS[0]
+    stream: str = PARTICIPANT
 
     @classmethod
     def read(cls, values: Mapping[str, str]) -> "Link":
@@ -45,14 +43,15 @@ class Link:
                     f"{name}: expected at most {LONGEST_ID} printable characters in the link, "
                     "filled in by the recruiter."
                 )
-        stream = next((pilot for pilot in STREAMS[1:] if values.get(pilot)), STREAMS[0])
+        pilots = (stream for stream in (PREVIEW, SIMULATED) if values.get(stream))
+        stream = next(pilots, PARTICIPANT)
         return cls(ids[0], ids[1], ids[2], stream)
 
     def fields(self) -> dict[str, str]:
         """The same as hidden fields of the consent form."""
         ids = (self.recruiter_id, self.recruiter_study, self.recruiter_session)
         fields = {name: value for name, value in zip(_LINK_IDS, ids, strict=True) if value}
-        return fields if self.stream == STREAMS[0] else {**fields, self.stream: "1"}
+        return fields if self.stream == PARTICIPANT else {**fields, self.stream: "1"}
 
 
 @dataclass(frozen=True)
@@ -117,7 +116,7 @@ def consent(
     if known is not None:
         return come_back(connection, study, known, user_agent) if known.moves else None
     if not study.settings.study_open:
-        raise StudyClosed("This study is closed. Thank you for your interest.")
+        raise StudyClosed(CLOSED_TO_ARRIVALS)
     participant = repository.add_participant(
         connection,
         pseudonym=secrets.token_hex(6),

@@ -62,6 +62,16 @@ def tally(connection: Connection, name: str) -> None:
     )
 
 
+def all_studies(connection: Connection) -> dict[str, Any]:
+    """Every definition of the study this database was used with, by its hash."""
+    return {row.hash: row.definition for row in connection.execute(select(studies))}
+
+
+def all_tallies(connection: Connection) -> dict[str, int]:
+    """The anonymous counts, by name."""
+    return {row[0]: row[1] for row in connection.execute(select(tallies))}
+
+
 def all_trials(connection: Connection) -> Iterable[Record]:
     """Every answered trial with its participant and condition, in order."""
     return connection.execute(

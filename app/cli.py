@@ -48,7 +48,11 @@ def serve(
         )
         typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
         shown = f"[{host}]" if ":" in host else host
-        typer.echo(f"The study is at http://{shown}:{listener.getsockname()[1]}/")
+        address = f"http://{shown}:{listener.getsockname()[1]}/"
+        typer.echo(f"The study is at {address}")
+        typer.echo(f"To try it without leaving data: {address}?preview=1")
+        for gap in settings.gaps:
+            typer.echo(f"Not set: {gap}", err=True)
         server.run(sockets=[listener])
 
 
@@ -78,11 +82,13 @@ def export(
     study = load_study(settings)
     database = open_database(study)
     try:
-        counts = write_export(database, study, to, simulated)
+        done = write_export(database, study, to, simulated)
     finally:
         database.close()
-    rows = ", ".join(f"{count} {name}" for name, count in counts.items())
-    typer.echo(f"{to}: {rows}, and what each column means in codebook.md")
+    rows = ", ".join(f"{count} {name}" for name, count in done.rows.items())
+    typer.echo(f"{to}: {rows}; codebook.md says what each column means.")
+    if done.pilots_left_out:
+        typer.echo(f"{done.pilots_left_out} pilots left out; --simulated includes them.")
 
 
 def main() -> None:

@@ -14,8 +14,8 @@ from app.pages import Pages
 from app.repository import Record
 from app.sessions import participant_of
 from app.settings import Ending
-from app.steps import ENDINGS, Step
-from app.study import Study
+from app.steps import ENDINGS, Step, may_withdraw
+from app.study import PREVIEW, Study
 
 COOKIE = "goalguess_session"
 COOKIE_SECONDS = 90 * 24 * 3600
@@ -79,13 +79,15 @@ def page(
     participant: Record | None = None,
     status: int = 200,
 ) -> HTMLResponse:
-    """A page of the participant's, with the way to withdraw while the study is open."""
+    """A page, for a participant with the way to withdraw where there is one."""
     at = services(request)
     return at.pages.render(
         template,
         context or {},
         participant=participant.pseudonym if participant else None,
-        can_withdraw=participant is not None and at.study.settings.study_open,
+        preview=participant is not None and participant.stream == PREVIEW,
+        can_withdraw=participant is not None
+        and may_withdraw(Step(participant.step), at.study.settings.study_open),
         status=status,
     )
 

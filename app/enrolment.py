@@ -11,12 +11,12 @@ from sqlalchemy import Connection
 
 from app import books, repository
 from app.assignment import deal_block
-from app.errors import StudyClosed
+from app.errors import CLOSED_TO_WITHDRAWAL, StudyClosed
 from app.event_log import note
 from app.questions import CONTROL_RIGHT
 from app.repository import Record
 from app.sessions import participant_of
-from app.steps import ENDINGS, Happening, Step, advance, judge_control
+from app.steps import ENDINGS, Happening, Step, advance, judge_control, may_withdraw
 from app.study import Study
 
 
@@ -91,8 +91,8 @@ def fail(connection: Connection, study: Study, token: str | None) -> None:
 def withdraw(connection: Connection, study: Study, token: str | None) -> None:
     """Delete all that is known of a participant, and note it outside the database."""
     participant = participant_of(connection, token)
-    if not study.settings.study_open:
-        raise StudyClosed("The study is closed. To withdraw, please write to the researchers.")
+    if not may_withdraw(Step(participant.step), study.settings.study_open):
+        raise StudyClosed(CLOSED_TO_WITHDRAWAL)
     # Noted before the commit: a withdrawal that is half done is done at the next start.
     with study.settings.withdrawals_file.open("a", encoding="ascii") as journal:
         # On a line of its own even if a crash cut the last one short.

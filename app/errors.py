@@ -50,6 +50,10 @@ class WrongStep(AppError):
     code = "wrong_step"
 
 
+CLOSED_TO_ARRIVALS = "No new participants can begin. Thank you for your interest."
+CLOSED_TO_WITHDRAWAL = "To have your answers deleted, please write to the researchers."
+
+
 class StudyClosed(AppError):
     """The study takes no new participants, and nobody out, any more."""
 

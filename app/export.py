@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,42 +13,52 @@ from app import books
 from app.answering import score_trial
 from app.database import Database
 from app.repository import Record
-from app.study import Study
+from app.study import PREVIEW, SIMULATED, Study
 
 Row = dict[str, Any]
 
 
-def export(database: Database, study: Study, folder: Path, simulated: bool) -> dict[str, int]:
-    """Write the three tables and the code book; returns the number of rows of each table.
+@dataclass(frozen=True)
+class Exported:
+    """How many rows of each table were written, and how many pilots were left out."""
 
-    Rows of simulated and preview participants are written only if asked for. All tables show
+    rows: dict[str, int]
+    pilots_left_out: int
+
+
+def export(database: Database, study: Study, folder: Path, simulated: bool) -> Exported:
+    """Write the three tables, the code book, and what the study's hashes stand for.
+
+    Rows of simulated and preview participants are written only if asked for. All files show
     the database at one moment, also while the study runs.
     """
 
-    def gather(connection: Connection) -> dict[str, list[Row]]:
+    def gather(connection: Connection) -> tuple[dict[str, list[Row]], Row]:
         trials = [_trial(study, record) for record in books.all_trials(connection)]
-        return {
+        tables = {
             TRIALS.name: trials,
             PARTICIPANTS.name: list(_participants(connection, trials)),
             EVENTS.name: [_event(record) for record in books.all_events(connection)],
         }
+        about = {"counts": books.all_tallies(connection), "studies": books.all_studies(connection)}
+        return tables, about
 
-    rows = database.read_now(gather)
-    if not simulated:
-        pilots = {
-            row["participant"]
-            for row in rows[PARTICIPANTS.name]
-            if row["simulated"] or row["preview"]
-        }
-        rows = {
-            name: [row for row in table if row["participant"] not in pilots]
-            for name, table in rows.items()
-        }
+    rows, about = database.read_now(gather)
+    pilots = {
+        row["participant"] for row in rows[PARTICIPANTS.name] if row["simulated"] or row["preview"]
+    }
+    left_out = set() if simulated else pilots
+    kept = {
+        name: [row for row in table if row["participant"] not in left_out]
+        for name, table in rows.items()
+    }
     folder.mkdir(parents=True, exist_ok=True)
     for table in (TRIALS, PARTICIPANTS, EVENTS):
-        write_table(table, rows[table.name], folder)
+        write_table(table, kept[table.name], folder)
     (folder / "codebook.md").write_text(code_book(), encoding="utf-8")
-    return {name: len(table) for name, table in rows.items()}
+    text = json.dumps(about, indent=2, sort_keys=True, ensure_ascii=False)
+    (folder / "study.json").write_text(f"{text}\n", encoding="utf-8")
+    return Exported({name: len(table) for name, table in kept.items()}, len(left_out))
 
 
 def _trial(study: Study, record: Record) -> Row:
@@ -137,8 +148,8 @@ def _event(record: Record) -> Row:
 
 def _marks(record: Record) -> Row:
     return {
-        "simulated": record.stream == "simulated",
-        "preview": record.stream == "preview",
+        "simulated": record.stream == SIMULATED,
+        "preview": record.stream == PREVIEW,
         "study_hash": record.study_hash,
         "app_version": record.app_version,
     }

@@ -43,12 +43,13 @@ class Pages:
         template: str,
         context: Mapping[str, Any],
         participant: str | None = None,
+        preview: bool = False,
         can_withdraw: bool = False,
         status: int = 200,
     ) -> HTMLResponse:
         """A page; `participant` is the pseudonym that keys what the browser stores."""
         html = self._templates.get_template(template).render(
-            participant=participant, can_withdraw=can_withdraw, **context
+            participant=participant, preview=preview, can_withdraw=can_withdraw, **context
         )
         return HTMLResponse(html, status, headers={"Cache-Control": "no-store"})
 

@@ -18,9 +18,15 @@ from app.deps import (
     services,
     token_of,
 )
-from app.errors import InvalidInput, NoSession, StudyClosed
+from app.errors import (
+    CLOSED_TO_ARRIVALS,
+    CLOSED_TO_WITHDRAWAL,
+    InvalidInput,
+    NoSession,
+    StudyClosed,
+)
 from app.questions import ABOUT_YOU, CONTROL, answers
-from app.steps import ENDINGS, Step
+from app.steps import ENDINGS, Step, may_withdraw
 from app.study import Study
 
 router = APIRouter(include_in_schema=False)
@@ -35,7 +41,7 @@ async def arrive(request: Request) -> Response:
     at, token = services(request), token_of(request)
     known = await at.database.read(lambda c: arrival.find(c, link, token))
     if known is None and not at.study.settings.study_open:
-        raise StudyClosed("This study is closed. Thank you for your interest.")
+        raise StudyClosed(CLOSED_TO_ARRIVALS)
     if known is None:
         fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
         return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
@@ -175,6 +181,8 @@ async def fail(request: Request) -> Response:
 async def confirm_withdrawal(request: Request) -> Response:
     """What withdrawing means, before it is done."""
     participant = await participant_at(request, *Step)
+    if not may_withdraw(Step(participant.step), services(request).study.settings.study_open):
+        raise StudyClosed(CLOSED_TO_WITHDRAWAL)
     return page(request, "withdraw.html", participant=participant)
 
 

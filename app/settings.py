@@ -76,6 +76,16 @@ class Settings(BaseSettings):
         return Path(str(url.database))
 
     @property
+    def gaps(self) -> list[str]:
+        """What participants will miss as long as it is not set, a line each."""
+        needed = {
+            "RESEARCHERS": (self.researchers, "the consent page names nobody"),
+            "CONTACT": (self.contact, "participants cannot reach you"),
+            "CODES": (self.codes.get("completed"), "recruited participants get no completion code"),
+        }
+        return [f"{PREFIX}{name} ({lack})" for name, (value, lack) in needed.items() if not value]
+
+    @property
     def withdrawals_file(self) -> Path:
         """The list of withdrawn participants, kept outside the database."""
         file = self.database_file

@@ -63,6 +63,11 @@ def advance(step: Step, happening: Happening) -> Step:
         raise WrongStep(f"{happening.value!r} cannot happen at step {step.value!r}.") from None
 
 
+def may_withdraw(step: Step, study_open: bool) -> bool:
+    """Whoever is on the way can withdraw at any time, whoever has ended while the study is open."""
+    return step != Step.WITHDRAWN and (study_open or step not in ENDINGS)
+
+
 def judge_control(right: bool, tries: int) -> Happening | None:
     """What an answer to the control question means, `tries` counting it; None: ask once more."""
     if right:

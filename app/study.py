@@ -23,6 +23,10 @@ AREA_STYLES = {
 """Colour and pattern of each area; the style sheet gives the names their values."""
 
 
+PARTICIPANT, PREVIEW, SIMULATED = "participant", "preview", "simulated"
+"""Streams: real participants and the two kinds of pilots, dealt and exported apart."""
+
+
 @dataclass(frozen=True)
 class Section:
     """A part of the consent text."""

@@ -11,8 +11,7 @@ ABOUT_ME = {
     "occupation": "employed",
     "robot_familiarity": "i have seen some",
 }
-RIGHT_ANSWER = {"answer": "know"}
-WRONG_ANSWER = {"answer": "end"}
+RIGHT_ANSWER = {"attempt": "1", "answer": "know"}
 
 Body = dict[str, Any]
 
@@ -21,11 +20,15 @@ def key() -> str:
     return str(uuid.uuid4())
 
 
+def control(answer: str, attempt: int = 1) -> dict[str, str]:
+    return {"attempt": str(attempt), "answer": answer}
+
+
 def event(kind: str, client_time_ms: float = 1.5, **details: Any) -> Body:
     return {"type": kind, "client_time_ms": client_time_ms, "details": details}
 
 
-def played(**changes: Any) -> Body:
+def played(ticket: str) -> Body:
     device = {
         "viewport_width": 1280,
         "viewport_height": 800,
@@ -34,10 +37,11 @@ def played(**changes: Any) -> Body:
         "pointer_type": "mouse",
         "reduced_motion": False,
     }
-    return {"key": key(), "device": device, "events": [event("shown"), event("played")], **changes}
+    events = [event("shown"), event("played")]
+    return {"key": key(), "ticket": ticket, "device": device, "events": events}
 
 
-def stopped(stop_time_ms: float, **changes: Any) -> Body:
+def stopped(stop_time_ms: float) -> Body:
     return {
         "key": key(),
         "stop_time_ms": stop_time_ms,
@@ -48,17 +52,16 @@ def stopped(stop_time_ms: float, **changes: Any) -> Body:
         "frames_dropped": 0,
         "reduced_motion": False,
         "events": [event("stopped")],
-        **changes,
     }
 
 
-def answered(guess: str = "A", confidence: int = 5, **changes: Any) -> Body:
+def answered(guess: str, stop_time_ms: float, confidence: int = 5) -> Body:
     return {
         "key": key(),
+        "stop_time_ms": stop_time_ms,
         "guess": guess,
         "confidence": confidence,
         "guess_latency_ms": 1200.5,
         "confidence_latency_ms": 800,
         "events": [event("answered")],
-        **changes,
     }

@@ -83,14 +83,21 @@ class Browser:
         state: dict[str, Any] = self.get("/api/trial").json()
         return state
 
+    def current(self) -> dict[str, Any]:
+        """The trial the participant is at; empty when there is none."""
+        return self.trial().get("trial") or {}
+
     def play(self, index: int, **changes: Any) -> Response:
-        return self.send(f"/api/trials/{index}/played", messages.played(**changes))
+        body = messages.played(self.current().get("ticket", "none"))
+        return self.send(f"/api/trials/{index}/played", body | changes)
 
     def stop(self, index: int, stop_time_ms: float, **changes: Any) -> Response:
-        return self.send(f"/api/trials/{index}/stopped", messages.stopped(stop_time_ms, **changes))
+        body = messages.stopped(stop_time_ms)
+        return self.send(f"/api/trials/{index}/stopped", body | changes)
 
     def answer(self, index: int, guess: str = "A", **changes: Any) -> Response:
-        return self.send(f"/api/trials/{index}/answered", messages.answered(guess, **changes))
+        body = messages.answered(guess, self.current().get("stop_time_ms") or 0)
+        return self.send(f"/api/trials/{index}/answered", body | changes)
 
     def finish_trial(self, index: int, guess: str = "A", stop_time_ms: float = 5000) -> Response:
         self.play(index)

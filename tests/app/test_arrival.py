@@ -1,9 +1,13 @@
 """Arrival: the link, consent, coming back, and which browser is the one that counts."""
 
 import re
+from datetime import timedelta
 
+import pytest
+from sqlalchemy import update
 from starlette.testclient import TestClient
 
+from app import repository
 from app.main import create_app
 from app.tables import (
     events,
@@ -11,6 +15,7 @@ from app.tables import (
     recruits,
     sessions,
     tallies,
+    trials,
 )
 from tests.app.conftest import ORIGIN, Browser
 
@@ -108,7 +113,78 @@ def test_an_impossible_recruiter_id_is_refused_in_words(browser):
     assert "PROLIFIC_PID: expected at most 100" in reply.text
 
 
-def test_no_new_participant_begins_in_a_closed_study(settings):
+def test_a_closed_study_says_so_and_takes_nobody_in(settings):
     closed = settings.model_copy(update={"study_open": False})
     with TestClient(create_app(closed), base_url=ORIGIN) as client:
-        assert Browser(client).consent().status_code == 409
+        browser = Browser(client)
+        assert "The study is closed" in browser.get("/").text
+        form = {"arrival": "x" * 20, "decision": "yes"}
+        assert "The study is closed" in browser.post("/consent", form).text
+
+
+def test_a_link_that_the_recruiter_did_not_fill_in_is_refused(browser):
+    reply = browser.get("/?PROLIFIC_PID={{%25PROLIFIC_PID%25}}")
+    assert reply.status_code == 422
+    assert "filled in by the recruiter" in reply.text
+
+
+def test_two_consent_pages_in_one_browser_make_one_participant(browser, rows):
+    pages = [browser.get("/").text for _ in range(2)]
+    for page in pages:
+        fields = dict(re.findall(r'name="(arrival)" value="(.*?)"', page))
+        browser.post("/consent", {**fields, "decision": "yes"})
+    assert len(rows(participants)) == 1
+    assert browser.get("/about-you").status_code == 200
+
+
+@pytest.mark.parametrize("query", ["", "?preview=1"])
+def test_on_a_shared_computer_the_next_person_begins_anew(browser, query):
+    browser.take_part(query)
+    assert "I agree" in browser.get("/" + query).text
+
+
+def test_a_preview_in_a_participants_browser_is_a_preview(browser, rows):
+    browser.consent()
+    browser.consent("?preview=1")
+    assert [row.stream for row in rows(participants)] == ["participant", "preview"]
+
+
+def test_a_recruited_participant_is_not_taken_for_a_preview_with_the_same_id(browser, rows):
+    browser.consent(PROLIFIC + "&preview=1")
+    browser.consent(PROLIFIC)
+    assert [row.stream for row in rows(participants)] == ["preview", "participant"]
+
+
+def test_a_moving_animation_goes_on_in_another_browser_as_far_as_it_can_have_been_seen(
+    browser, another_browser, client, rows
+):
+    browser.reach_trials(PROLIFIC)
+    browser.play(1)
+    then = repository.now() - timedelta(seconds=7)
+    database = client.app.state.services.database
+    database.submit(lambda c: c.execute(update(trials).values(played_at=then))).result()
+    newer = another_browser()
+    newer.get("/" + PROLIFIC)
+    assert 7000 <= newer.current()["position_ms"] < 9000
+    database.submit(
+        lambda c: c.execute(update(trials).values(played_at=then - timedelta(hours=1)))
+    ).result()
+    third = another_browser()
+    third.get("/" + PROLIFIC)
+    assert third.current()["position_ms"] == rows(trials)[0].length_ms
+
+
+def test_the_browser_that_somebody_comes_back_with_is_logged(browser, another_browser, rows):
+    browser.consent(PROLIFIC)
+    newer = another_browser()
+    newer.client.headers["user-agent"] = "Newer/2.0"
+    newer.get("/" + PROLIFIC)
+    assert [row.details["user_agent"] for row in rows(events) if row.type == "came_back"] == [
+        "Newer/2.0"
+    ]
+
+
+def test_an_old_session_on_the_plain_link_belongs_to_somebody_else(browser, another_browser):
+    browser.reach_practice(PROLIFIC)
+    another_browser().get("/" + PROLIFIC)
+    assert "I agree" in browser.get("/").text

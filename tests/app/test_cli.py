@@ -71,8 +71,11 @@ def test_help_loads_none_of_the_heavy_libraries():
             "expected a SQLite file",
         ),
         (["export", "--to", "out"], {"GOALGUESS_STEP_MS": "slow"}, "GOALGUESS_STEP_MS"),
-        (["serve"], {"GOALGUESS_CODES": "C1"}, "expected JSON"),
-        (["serve"], {"GOALGUESS_CODES": '{"finished": "C1"}'}, "GOALGUESS_CODES_FINISHED"),
+        (["serve"], {"GOALGUESS_CODES": "C1"}, "GOALGUESS_CODES: expected JSON"),
+        (["serve"], {"GOALGUESS_STEPMS": "3"}, "GOALGUESS_STEPMS: expected one of"),
+        (["serve"], {"GOALGUESS_SEED": "1" + 30 * "0"}, "GOALGUESS_SEED"),
+        (["serve"], {"GOALGUESS_DATABASE_URL": "sqlite:///:memory:"}, "expected a SQLite file"),
+        (["serve"], {"GOALGUESS_CODES": '{"finished": "C1"}'}, "GOALGUESS_CODES, 'finished'"),
         (
             ["serve"],
             {"GOALGUESS_DATABASE_URL": "sqlite:////no/such/folder/x.sqlite"},

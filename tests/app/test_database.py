@@ -169,3 +169,12 @@ def test_two_databases_on_one_file_take_turns(bare, settings):
     assert not any(future.exception() for future in futures)
     assert len(names(bare)) == 30
     other.close()
+
+
+def test_a_write_that_was_given_up_harms_nobody_else(bare):
+    go_on = hold(bare)
+    given_up, after = bare.submit(add("given up")), bare.submit(add("after"))
+    assert given_up.cancel()
+    go_on.set()
+    after.result()
+    assert names(bare) == {"after"}

@@ -7,9 +7,11 @@ import pytest
 from sqlalchemy import select, update
 from starlette.testclient import TestClient
 
-from app import repository
+from app import arrival, enrolment, repository
+from app.arrival import Link
 from app.main import create_app
 from app.opening import open_database
+from app.sessions import participant_of
 from app.settings import Settings
 from app.study import load_study
 from app.tables import (
@@ -88,20 +90,39 @@ def test_answers_sent_twice_are_kept_once(browser, rows):
 
 def test_the_control_question_is_asked_twice_then_screens_out(browser, rows):
     browser.reach_practice()
-    assert location(browser.post("/practice", messages.WRONG_ANSWER)) == "/practice"
+    assert location(browser.post("/practice", messages.control("end"))) == "/practice"
     assert "one more try" in browser.get("/practice").text
-    assert location(browser.post("/practice", messages.WRONG_ANSWER)) == "/end"
+    assert location(browser.post("/practice", messages.control("end", 2))) == "/end"
     assert browser.get("/end").status_code == 200
     (participant,) = rows(participants)
     assert (participant.step, participant.control_tries) == ("screened_out", 2)
     assert rows(places) == []
 
 
+def test_a_wrong_answer_sent_twice_is_one_try(browser, rows):
+    browser.reach_practice()
+    for _ in range(2):
+        assert location(browser.post("/practice", messages.control("end"))) == "/practice"
+    assert (rows(participants)[0].step, rows(participants)[0].control_tries) == ("practice", 1)
+
+
 def test_the_second_try_may_pass(browser, rows):
     browser.reach_practice()
-    browser.post("/practice", messages.WRONG_ANSWER)
-    assert location(browser.post("/practice", messages.RIGHT_ANSWER)) == "/trial"
+    browser.post("/practice", messages.control("end"))
+    assert location(browser.post("/practice", messages.control("know", 2))) == "/trial"
     assert rows(participants)[0].step == "trials"
+
+
+@pytest.mark.parametrize(
+    ("reach", "path"),
+    [("reach_practice", "/instructions"), ("reach_trials", "/failed"), ("consent", "/withdraw")],
+)
+def test_a_button_pressed_twice_leads_where_the_first_press_led(browser, reach, path):
+    getattr(browser, reach)()
+    browser.post(path)
+    again = browser.post(path)
+    assert again.status_code == 303
+    assert browser.client.get(location(again)).status_code == 200
 
 
 def test_a_place_is_dealt_only_when_the_control_question_is_passed(browser, rows):
@@ -209,10 +230,69 @@ def test_a_restored_backup_drops_those_who_withdrew(browser, settings, tmp_path)
     assert steps == ["withdrawn"]
 
 
-def test_withdrawing_ends_with_the_study(browser, settings):
-    browser.consent()
+def closed_to(browser, settings):
+    """The same browser, after the study was closed."""
     token = browser.client.cookies["goalguess_session"]
     closed = settings.model_copy(update={"study_open": False})
-    with TestClient(create_app(closed), base_url=ORIGIN) as client:
-        client.cookies.set("goalguess_session", token)
-        assert Browser(client).post("/withdraw").status_code == 409
+    client = TestClient(create_app(closed), base_url=ORIGIN)
+    client.cookies.set("goalguess_session", token)
+    return client
+
+
+def test_who_has_finished_can_withdraw_until_the_study_closes(browser, settings):
+    browser.take_part()
+    assert "/withdraw" in browser.get("/end").text
+    with closed_to(browser, settings) as client:
+        late = Browser(client)
+        assert "/withdraw" not in late.get("/end").text
+        assert late.get("/withdraw").status_code == 409
+        assert "write to the researchers" in late.post("/withdraw").text
+
+
+def test_who_is_on_the_way_can_withdraw_from_a_closed_study(browser, settings):
+    browser.reach_trials()
+    with closed_to(browser, settings) as client:
+        assert location(Browser(client).post("/withdraw")) == "/withdrawn"
+
+
+def test_withdrawing_before_the_first_frame_gives_the_place_back(browser, rows):
+    browser.reach_trials()
+    browser.post("/withdraw")
+    assert all(row.participant_id is None and row.dealt_at is None for row in rows(places))
+
+
+def test_after_a_withdrawal_no_file_of_the_database_holds_the_answers(browser, settings):
+    browser.client.headers["user-agent"] = "Unmistakable/1.0"
+    browser.take_part("?PROLIFIC_PID=unmistakable-person")
+    browser.post("/withdraw")
+    for file in settings.database_file.parent.iterdir():
+        content = file.read_bytes()
+        assert b"unmistakable-person" not in content, file
+        assert b"Unmistakable/1.0" not in content, file
+
+
+def test_a_withdrawal_is_noted_outside_before_it_is_committed(database, study):
+    def begin(connection):
+        token = arrival.consent(connection, study, messages.key(), Link(), None, "test")
+        return token, participant_of(connection, token).pseudonym
+
+    token, pseudonym = database.submit(begin).result()
+
+    def withdraw_and_crash(connection):
+        enrolment.withdraw(connection, study, token)
+        raise RuntimeError("power cut")
+
+    with pytest.raises(RuntimeError):
+        database.submit(withdraw_and_crash).result()
+    assert pseudonym in study.settings.withdrawals_file.read_text().split()
+    database.submit(lambda c: enrolment.withdraw_again(c, study)).result()
+    left = database.read_now(lambda c: c.execute(select(participants)).one())
+    assert left.step == "withdrawn"
+
+
+def test_a_line_cut_short_in_the_list_of_withdrawals_harms_no_other(browser, settings, rows):
+    settings.withdrawals_file.write_text("abc")
+    browser.consent()
+    browser.post("/withdraw")
+    listed = settings.withdrawals_file.read_text().split()
+    assert listed == ["abc", rows(participants)[0].pseudonym]

@@ -14,8 +14,8 @@ from app.tables import places, trials
 @pytest.fixture
 def write(client, study, tmp_path):
     def run(simulated=False):
-        counts = export(client.app.state.services.database, study, tmp_path / "out", simulated)
-        return counts, tmp_path / "out"
+        done = export(client.app.state.services.database, study, tmp_path / "out", simulated)
+        return done.rows, tmp_path / "out"
 
     return run
 
@@ -41,7 +41,7 @@ def test_every_table_is_written_in_three_forms_with_its_code_book(browser, write
         for t in ("trials", "participants", "events")
         for f in ("csv", "jsonl", "parquet")
     }
-    assert names == wanted | {"codebook.md"}
+    assert names == wanted | {"codebook.md", "study.json"}
     book = (folder / "codebook.md").read_text()
     for table in (TRIALS, PARTICIPANTS, EVENTS):
         assert all(f"`{name}`" in book or f"| {name} " in book for name in table.names)
@@ -137,3 +137,20 @@ def test_details_of_events_stay_json(browser, write):
     _, folder = write()
     for text in pl.read_csv(folder / "events.csv")["details"].to_list():
         assert isinstance(json.loads(text), dict)
+
+
+def test_what_the_hashes_stand_for_and_the_anonymous_counts_are_exported(browser, write, study):
+    browser.post("/consent", {"decision": "no"})
+    browser.take_part()
+    _, folder = write()
+    about = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    assert about["counts"] == {"arrived, no consent": 1}
+    (row,) = set(pl.read_csv(folder / "trials.csv")["study_hash"])
+    assert about["studies"][row]["consent_text"] == study.consent_text
+
+
+def test_the_number_of_pilots_left_out_is_told(browser, client, study, tmp_path):
+    browser.consent("?preview=1")
+    database = client.app.state.services.database
+    assert export(database, study, tmp_path / "a", simulated=False).pilots_left_out == 1
+    assert export(database, study, tmp_path / "b", simulated=True).pilots_left_out == 0

@@ -13,11 +13,19 @@ from app.tables import studies
 
 def test_the_seed_is_stored_when_the_database_is_made_and_stays(settings, study):
     open_database(study).close()
-    changed = settings.model_copy(update={"seed": 2, "block_size": 8})
-    database = open_database(load_study(changed))
+    unseeded = settings.model_copy(update={"seed": None})
+    database = open_database(load_study(unseeded))
     drawn = database.read_now(drawn_from)
     database.close()
     assert (drawn.seed, drawn.block_size) == (1, 4)
+
+
+@pytest.mark.parametrize(("name", "value"), [("seed", 2), ("block_size", 8)])
+def test_another_seed_or_block_size_than_the_stored_one_is_refused(settings, study, name, value):
+    open_database(study).close()
+    changed = Settings(**{**settings.model_dump(exclude_unset=True), name: value})
+    with pytest.raises(DatabaseMismatch, match=f"GOALGUESS_{name.upper()}: expected"):
+        open_database(load_study(changed))
 
 
 def test_without_a_seed_one_is_drawn_at_random(tmp_path):

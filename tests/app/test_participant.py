@@ -3,11 +3,15 @@
 import json
 
 import pytest
+from starlette.testclient import TestClient
 
 from app.deps import PATHS
+from app.main import create_app
 from app.steps import Step
 from app.tables import places, trials
 from policies import CONDITIONS
+from tests import messages
+from tests.app.conftest import ORIGIN, Browser
 
 PAGE_PATHS = ["/about-you", "/instructions", "/practice", "/trial", "/end"]
 REACH = {
@@ -44,12 +48,6 @@ def test_every_step_has_a_page():
     ("ending", "code"), [("completed", "C1"), ("screened_out", "C2"), ("failed", "C3")]
 )
 def test_each_ending_has_a_code_of_its_own(settings, ending, code):
-    from starlette.testclient import TestClient
-
-    from app.main import create_app
-    from tests import messages
-    from tests.app.conftest import ORIGIN, Browser
-
     coded = settings.model_copy(
         update={"codes": {"completed": "C1", "screened_out": "C2", "failed": "C3"}}
     )
@@ -62,8 +60,8 @@ def test_each_ending_has_a_code_of_its_own(settings, ending, code):
             if ending == "failed":
                 browser.post("/failed")
             else:
-                browser.post("/practice", messages.WRONG_ANSWER)
-                browser.post("/practice", messages.WRONG_ANSWER)
+                browser.post("/practice", messages.control("end", 1))
+                browser.post("/practice", messages.control("end", 2))
         page = browser.get("/end").text
     assert [one for one in ("C1", "C2", "C3") if f">{one}<" in page] == [code]
     assert f"https://app.prolific.com/submissions/complete?cc={code}" in page
@@ -77,7 +75,7 @@ def test_an_unanswered_control_question_is_asked_again(browser):
 def test_the_practice_animation_is_for_those_at_practice(browser):
     browser.reach_practice()
     assert len(browser.get("/api/practice").json()["areas"]) == 6
-    browser.post("/practice", {"answer": "know"})
+    browser.post("/practice", messages.control("know"))
     assert browser.client.get("/api/practice", follow_redirects=False).status_code == 409
 
 

@@ -1,10 +1,13 @@
 """What every request must pass and every reply carries."""
 
+from hashlib import sha256
+
 import pytest
 from starlette.testclient import TestClient
 
 from app import arrival
 from app.main import create_app
+from app.tables import sessions
 from tests import messages
 from tests.app.conftest import ORIGIN, Browser
 
@@ -51,11 +54,11 @@ def test_over_https_the_session_cookie_is_secure(client):
     assert "secure" in reply.headers["set-cookie"].lower()
 
 
-def test_only_a_hash_of_the_token_is_stored(browser, settings):
+def test_only_a_hash_of_the_token_is_stored(browser, rows):
     browser.consent()
     token = browser.client.cookies["goalguess_session"]
     assert len(token) >= 40
-    assert token.encode() not in settings.database_file.read_bytes()
+    assert [row.token_hash for row in rows(sessions)] == [sha256(token.encode()).hexdigest()]
 
 
 @pytest.mark.parametrize(
@@ -64,6 +67,8 @@ def test_only_a_hash_of_the_token_is_stored(browser, settings):
         {},
         {"origin": "https://elsewhere.test"},
         {"origin": "null"},
+        {"origin": "http://["},
+        {"origin": "study.test"},
         {"sec-fetch-site": "cross-site"},
         {"origin": "https://elsewhere.test", "sec-fetch-site": "same-origin"},
     ],

@@ -96,10 +96,12 @@ async def take_part(port: int, times_ms: Times, rng: np.random.Generator) -> Non
         while state["trial"]:
             trial = state["trial"]
             length_ms = trial["playback"]["step_ms"] * (len(trial["playback"]["path"]) - 1)
+            stop_ms = rng.uniform(0, length_ms)
             at = f"/api/trials/{trial['index']}"
-            await browser.send(f"{at}/played", messages.played())
-            await browser.send(f"{at}/stopped", messages.stopped(rng.uniform(0, length_ms)))
-            answer = messages.answered("ABCDEF"[rng.integers(6)], int(rng.integers(1, 8)))
+            await browser.send(f"{at}/played", messages.played(trial["ticket"]))
+            await browser.send(f"{at}/stopped", messages.stopped(stop_ms))
+            guess, confidence = "ABCDEF"[rng.integers(6)], int(rng.integers(1, 8))
+            answer = messages.answered(guess, stop_ms, confidence)
             state = await browser.send(f"{at}/answered", answer)
         await browser.get("/end")
 
