@@ -96,7 +96,7 @@ TRIALS = Table(
         Column(
             "confidence",
             INTEGER,
-            "How confident in the guess, from not at all (1) to fully (7).",
+            "How confident in the guess, from not at all sure (1) to completely sure (7).",
             "scale points",
             low=1,
             high=7,
@@ -146,7 +146,7 @@ PARTICIPANTS = Table(
         Column(
             "condition",
             TEXT,
-            "Policy dealt to the participant; empty if none was.",
+            "Policy of the place held; empty if none was dealt, or it was given back unplayed.",
             choices=CONDITIONS,
             nullable=True,
         ),

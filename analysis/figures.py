@@ -94,7 +94,7 @@ def figure_confidence(values: Sequence[NDArray[np.float64]]) -> Figure:
     """
     present = [each[~np.isnan(each)] for each in values]
     with _panel(
-        "Confidence, 1 (not at all) to 7 (fully)",
+        "Confidence, 1 (not at all sure) to 7 (completely)",
         "Dot: mean; thick line: median; box: quartiles",
     ) as (figure, axes):
         drawn = axes.boxplot(

@@ -28,7 +28,12 @@ class Notice:
 
 def notices(data: Dataset, block: PaperBlock) -> list[Notice]:
     """Collect what limits the numbers, the gravest first."""
-    return _about_selection(data) + _about_tests(block) + _about_gaps(data, block)
+    return (
+        _about_selection(data)
+        + _about_studies(data)
+        + _about_tests(block)
+        + _about_gaps(data, block)
+    )
 
 
 def _about_selection(data: Dataset) -> list[Notice]:
@@ -39,6 +44,17 @@ def _about_selection(data: Dataset) -> list[Notice]:
         text = f"Not a result: {marked} are in the numbers, as asked for."
         return [Notice("simulated_included", "trials", text)]
     return [Notice("simulated_left_out", "trials", f"Left out: {marked}.")]
+
+
+def _about_studies(data: Dataset) -> list[Notice]:
+    """Trials recorded under different definitions of the study are not one sample."""
+    if "study_hash" not in data.trials.columns:
+        return []
+    found = data.trials["study_hash"].drop_nulls().unique().sort().to_list()
+    if len(found) < 2:
+        return []
+    text = f"Trials of {len(found)} definitions of the study are pooled: {', '.join(found)}."
+    return [Notice("several_studies", "trials", text)]
 
 
 def _about_tests(block: PaperBlock) -> list[Notice]:

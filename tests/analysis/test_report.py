@@ -177,6 +177,13 @@ def test_tests_that_are_not_defined_are_noted(tmp_path):
     assert {"degenerate_margin", "constant_outcome", "too_few_values"} <= set(found)
 
 
+def test_trials_of_two_studies_are_not_pooled_in_silence(tmp_path):
+    rows = six_participants()
+    assert "several_studies" not in codes(write_table(TRIALS, rows, tmp_path)[0])
+    rows[-1]["study_hash"] = "another"
+    assert "several_studies" in codes(write_table(TRIALS, rows, tmp_path)[0])
+
+
 def test_small_expected_counts_are_noted(export):
     assert "small_expected_count" in codes(export)
 
