@@ -96,16 +96,11 @@ class Study:
         """Full motion of a stimulus, ms, without lead-in."""
         return stimulus.steps * self.settings.step_ms
 
-    def playback(self, stimulus: Stimulus) -> dict[str, Any]:
-        """What the page needs to play a stimulus, and nothing that names condition or goal."""
-        return {
-            **self.picture(stimulus),
-            "step_ms": self.settings.step_ms,
-            "lead_in_ms": self.settings.lead_in_ms,
-        }
-
     def picture(self, stimulus: Stimulus) -> dict[str, Any]:
-        """The maze, its areas and the path through it, cells as (row, column)."""
+        """The maze, its areas and the path through it, cells as (row, column).
+
+        Pages get this before the guess: nothing in it may name condition or goal.
+        """
         scene = self.pool.scenes[stimulus.maze]
         return {
             "rows": scene.rows,

@@ -20,6 +20,7 @@ from app.errors import InvalidInput
 from app.schemas import Answered, Logged, Message, Played, Stopped
 from app.steps import Step
 from app.study import Study
+from policies import Stimulus
 
 M = TypeVar("M", bound=Message)
 Happen = Callable[[Connection, Study, str | None, int, M], Reply]
@@ -29,7 +30,8 @@ async def practice(request: Request) -> Response:
     """The practice animation."""
     await participant_at(request, Step.PRACTICE)
     study = services(request).study
-    return as_json(study.playback(study.pool.practice))
+    settings = study.settings
+    return as_json(_playback(study, study.pool.practice, settings.step_ms, settings.lead_in_ms))
 
 
 async def trial(request: Request) -> Response:
@@ -97,11 +99,12 @@ def _state(study: Study, standing: Standing | None) -> dict[str, Any]:
             "position_ms": standing.position_ms,
             "stop_time_ms": standing.stop_time_ms,
             "ticket": standing.ticket,
-            "playback": {
-                **study.picture(standing.stimulus),
-                "step_ms": standing.step_ms,
-                "lead_in_ms": standing.lead_in_ms,
-            },
+            "playback": _playback(study, standing.stimulus, standing.step_ms, standing.lead_in_ms),
         },
         "next": None,
     }
+
+
+def _playback(study: Study, stimulus: Stimulus, step_ms: int, lead_in_ms: int) -> dict[str, Any]:
+    """What the page needs to play a stimulus."""
+    return {**study.picture(stimulus), "step_ms": step_ms, "lead_in_ms": lead_in_ms}

@@ -123,7 +123,7 @@ def test_playbacks_of_the_two_conditions_look_alike(study):
 
     for scenario in study.pool.scenarios:
         shapes = [
-            json.dumps(shape(study.playback(study.pool.stimulus(scenario.id, condition))))
+            json.dumps(shape(study.picture(study.pool.stimulus(scenario.id, condition))))
             for condition in CONDITIONS
         ]
         assert shapes[0] == shapes[1]
