@@ -25,8 +25,8 @@ from policies import Stimulus
 class Standing:
     """Where a participant is in the trials.
 
-    `ticket` says, to nobody but us, which dealing of which place this is; a trial that was begun
-    keeps the speed it was begun with.
+    `ticket` says, to nobody but us, which dealing of which place this is, at which speed; a trial
+    that was begun keeps the speed it was begun with.
     """
 
     index: int
@@ -84,7 +84,7 @@ def standing(study: Study, participant: Record) -> Standing:
         index=participant.trial_index,
         phase=Phase.MOVING if participant.stopped_at is None else Phase.ASKING,
         stimulus=study.pool.stimuli[participant.stimulus],
-        ticket=_ticket(participant),
+        ticket=_ticket(participant, participant.step_ms, participant.lead_in_ms),
         step_ms=participant.step_ms,
         lead_in_ms=participant.lead_in_ms,
         position_ms=participant.position_ms,
@@ -210,12 +210,12 @@ def score_trial(study: Study, trial: Record) -> TrialScore:
 def _ready(study: Study, participant: Record, index: int) -> Standing:
     stimulus = study.pool.stimulus(participant.scenarios[index - 1], participant.condition)
     speed = (study.settings.step_ms, study.settings.lead_in_ms)
-    return Standing(index, Phase.READY, stimulus, _ticket(participant), *speed)
+    return Standing(index, Phase.READY, stimulus, _ticket(participant, *speed), *speed)
 
 
-def _ticket(participant: Record) -> str:
-    dealing = f"{participant.pseudonym}/{participant.number}/{participant.dealt_at.isoformat()}"
-    return sha256(dealing.encode()).hexdigest()[:16]
+def _ticket(participant: Record, step_ms: int, lead_in_ms: int) -> str:
+    place = (participant.pseudonym, participant.number, participant.dealt_at.isoformat())
+    return sha256(repr((*place, step_ms, lead_in_ms)).encode()).hexdigest()[:16]
 
 
 def _once(

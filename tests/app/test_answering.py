@@ -295,6 +295,18 @@ def test_a_trial_begun_keeps_its_speed_and_its_study_over_a_restart(browser, row
     assert hashes == [load_study(settings).hash, load_study(faster).hash]
 
 
+def test_an_animation_loaded_before_a_restart_at_another_speed_is_loaded_again(browser, settings):
+    browser.reach_trials()
+    ticket = browser.current()["ticket"]
+    token = browser.client.cookies["goalguess_session"]
+    faster = settings.model_copy(update={"step_ms": 500})
+    with TestClient(create_app(faster), base_url=ORIGIN) as client:
+        client.cookies.set("goalguess_session", token)
+        again = Browser(client)
+        assert again.play(1, ticket=ticket).json()["error"]["code"] == "place_returned"
+        assert again.play(1).status_code == 200
+
+
 @pytest.mark.parametrize("value", ["NaN", "Infinity"])
 def test_details_that_are_no_json_are_refused(browser, value):
     browser.reach_trials()
