@@ -1,4 +1,4 @@
-"""Answers in any interleaving: whatever is sent, and however often, the first that was due stays."""
+"""Answers in any interleaving: whatever is sent, however often, the first that was due stays."""
 
 from typing import Any
 
