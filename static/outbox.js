@@ -18,7 +18,7 @@ export class Outbox {
   #late = false;
   #closed = false;
 
-  /** `on`: {late(), saved() after late, refused(error): the server will not take the first message}. */
+  /** `on`: {late(paths that wait), saved() after late, refused(error): the server will not take the first message}. */
   constructor(name, on) {
     this.#name = name;
     this.#on = on;
@@ -69,7 +69,10 @@ export class Outbox {
 
   /** Work through the queue; called again after a refusal, it tries again. */
   async deliver() {
-    if (this.#busy) return;
+    if (this.#busy) {
+      if (this.#late) this.#tellLate();
+      return;
+    }
     this.#busy = true;
     const timer = setTimeout(() => this.#tellLate(), LATE_MS);
     try {
@@ -102,7 +105,7 @@ export class Outbox {
   #tellLate() {
     if (this.#closed) return;
     this.#late = true;
-    this.#on.late();
+    this.#on.late(this.#queue.map((message) => message.path));
   }
 
   #add(path, body) {

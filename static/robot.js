@@ -17,7 +17,6 @@ export function drawRobot(context, colours, pose) {
 
   context.save();
   context.translate(0, -0.05 * pose.hop);
-  if (still) drawPuffs(context, colours, pose.standing);
   context.scale(1 + 0.07 * breath, 1 - 0.07 * breath);
 
   const body = bodyOf(dx, dy);
@@ -28,6 +27,7 @@ export function drawRobot(context, colours, pose) {
   context.fill(body);
   drawFace(context, colours, dx, dy, breath > 0.25);
   context.restore();
+  if (still) drawStrokes(context, colours, pose.standing);
 }
 
 /** A round box, drawn out to a point in the direction it looks. */
@@ -58,18 +58,16 @@ function drawFace(context, colours, dx, dy, blinking) {
   }
 }
 
-/** Two little clouds, alike on both sides: they say "it stands" and nothing about where it wanted. */
-function drawPuffs(context, colours, share) {
+/** Three strokes above the head, alike on both sides: it stands, and nothing tells where it wanted. */
+function drawStrokes(context, colours, share) {
+  const strokes = new Path2D("M0-.4V-.56M-.17-.39-.26-.52M.17-.39.26-.52");
   context.save();
-  context.globalAlpha = 0.9 * Math.sin(Math.PI * Math.min(1, share * 1.1));
-  context.fillStyle = colours.robotLight;
-  for (const side of [-1, 1]) {
-    for (const [far, size] of [[0.36, 0.065], [0.44, 0.045]]) {
-      context.beginPath();
-      const drift = far + 0.06 * share;
-      context.arc(side * drift, -0.24 - 0.16 * share * (far / 0.4), size, 0, 2 * Math.PI);
-      context.fill();
-    }
+  context.globalAlpha = Math.min(1, 8 * share, 8 * (1 - share));
+  context.lineCap = "round";
+  for (const [colour, width] of [[colours.robotEdge, 0.15], [colours.accent, 0.075]]) {
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.stroke(strokes);
   }
   context.restore();
 }

@@ -6,7 +6,7 @@ const MARGIN = 0.12; // around the border walls, in cells
 const COLOURS = {
   floor: "--floor", grid: "--grid", wall: "--wall", plate: "--plate", plateInk: "--plate-ink",
   pattern: "--pattern", accent: "--accent", robot: "--robot", robotEdge: "--robot-edge",
-  robotFace: "--robot-face", robotEye: "--robot-eye", robotLight: "--robot-light",
+  robotFace: "--robot-face", robotEye: "--robot-eye",
 };
 
 export class Scene {
@@ -130,19 +130,23 @@ export class Scene {
     this.#inCells(context);
     this.#paintChosen(context);
     const place = robotPlace(this.#playback.path, this.#view.steps, this.#view.discrete);
+    if (this.#view.ring !== null) this.#paintRing(context, place);
     context.translate(place.col + 0.5, place.row + 0.5);
-    if (this.#view.ring !== null) this.#paintRing(context);
     const hop = this.#view.ring === null || this.#view.discrete ? 0 : Math.abs(Math.sin(9 * this.#view.ring));
     drawRobot(context, this.#colours, { look: place.look, standing: place.standing, hop });
   }
 
-  /** Closes in on the robot during the lead-in, so that eyes find it before it moves. */
-  #paintRing(context) {
+  /** Closes in on the robot during the lead-in, so that eyes find it; always whole, also at the edge. */
+  #paintRing(context, { row, col }) {
     const share = this.#view.discrete ? 1 : this.#view.ring;
     context.strokeStyle = this.#colours.accent;
     context.lineWidth = 0.07;
     context.beginPath();
-    context.arc(0, 0, 0.56 + 1.5 * (1 - share) ** 2, 0, 2 * Math.PI);
+    const radius = 0.56 + 1.5 * (1 - share) ** 2;
+    const room = radius + context.lineWidth / 2 - MARGIN;
+    const inside = (middle, cells) => Math.min(Math.max(middle, room), cells - room);
+    const [x, y] = [inside(col + 0.5, this.#playback.cols), inside(row + 0.5, this.#playback.rows)];
+    context.arc(x, y, radius, 0, 2 * Math.PI);
     context.stroke();
   }
 
@@ -163,25 +167,23 @@ export function robotPlace(path, steps, discrete) {
   const step = Math.min(Math.floor(steps), last - 1);
   const share = Math.min(steps - step, 1);
   const [from, to] = [path[step], path[step + 1]];
-  const stands = from[0] === to[0] && from[1] === to[1];
-  const before = facing(path, step);
-  const now = stands ? before : [to[1] - from[1], to[0] - from[0]];
+  const before = facing(path, step - 1);
+  const now = facing(path, step);
+  const stands = !now[0] && !now[1];
   const moved = discrete ? Number(share >= 0.5) : ease(share);
   return {
     row: from[0] + (to[0] - from[0]) * moved,
     col: from[1] + (to[1] - from[1]) * moved,
-    look: discrete ? (moved ? now : before) : look(before, now, share),
+    look: discrete ? (moved || stands ? now : before) : look(before, now, share),
     standing: stands && share > 0 && share < 1 ? (discrete ? 0.5 : share) : null,
   };
 }
 
-/** The direction of the last real move before `step`; straight ahead at the beginning. */
+/** The direction of a step as [dx, dy]: none, straight ahead, where it fails and before the first. */
 function facing(path, step) {
-  for (let i = step; i > 0; i -= 1) {
-    const [dx, dy] = [path[i][1] - path[i - 1][1], path[i][0] - path[i - 1][0]];
-    if (dx || dy) return [dx, dy];
-  }
-  return [0, 0];
+  if (step < 0) return [0, 0];
+  const [from, to] = [path[step], path[step + 1]];
+  return [to[1] - from[1], to[0] - from[0]];
 }
 
 /** Even motion with a gentle swing: slow at the cells' middles, quicker between them. */

@@ -10,6 +10,8 @@ import { Tabs } from "./tabs.js";
 const byId = (id) => document.getElementById(id);
 const OURS = `goalguess:${document.body.dataset.participant ?? ""}`;
 const REACHED = `${OURS}:reached`; // how far the robot of the present round has come
+const ANSWER_WAITS = "Saving … keep this page open; your answer is safe on this device.";
+const OFFLINE = "No connection … trying again.";
 
 const stage = byId("stage");
 let outbox = null; // there is one while this tab is the active one
@@ -43,13 +45,13 @@ byId("try-again").addEventListener("click", () => {
 async function start() {
   notice(null);
   outbox = new Outbox(`${OURS}:outbox`, {
-    late: () => saving("Saving … keep this page open; your answer is safe on this device."),
+    late: (paths) => saving(paths.some((path) => path.endsWith("/answered")) ? ANSWER_WAITS : OFFLINE),
     saved: () => saving("Saved"),
     refused,
   });
   await outbox.flush();
   try {
-    show(await patiently("/api/trial", undefined, () => saving("No connection … trying again.")));
+    show(await patiently("/api/trial", undefined, () => saving(OFFLINE)));
     saving("");
   } catch (error) {
     refused(error);
@@ -168,6 +170,7 @@ function giveWay() {
   outbox.close();
   outbox = null;
   trial = null;
+  byId("other-tab-title").textContent = "You went on in another tab";
   notice("other-tab");
 }
 

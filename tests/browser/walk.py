@@ -1,6 +1,7 @@
 """How a participant gets through the study: quickly up to the trials, and through one trial."""
 
 import re
+from typing import Any
 
 from playwright.sync_api import Page
 
@@ -19,7 +20,7 @@ def reach_practice(page: Page, link: str = "/") -> None:
 def reach_trials(page: Page, link: str = "/") -> None:
     """To the first trial, opened and ready to be played."""
     reach_practice(page, link)
-    post(page, "/practice", messages.RIGHT_ANSWER)
+    post(page, "/practice", messages.control("know"))
     page.goto("/trial")
     ready(page)
 
@@ -34,6 +35,12 @@ def send(page: Page, path: str, body: messages.Body) -> None:
     """Send a message as the trial page would."""
     reply = page.request.post(path, data=body, headers={"origin": page.evaluate("origin")})
     assert reply.ok, f"{path}: {reply.text()}"
+
+
+def trial(page: Page) -> dict[str, Any]:
+    """The trial the server says the participant is at."""
+    state: dict[str, Any] = page.request.get("/api/trial").json()["trial"]
+    return state
 
 
 def phase(page: Page, name: str) -> None:
