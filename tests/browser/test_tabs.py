@@ -17,7 +17,8 @@ def test_a_second_tab_is_told_and_may_take_over_where_the_first_one_was(site: Si
     expect(second.locator("#play")).to_be_hidden()
     second.get_by_role("button", name="Use this tab instead").click()
     walk.phase(second, "paused")
-    expect(first.get_by_role("heading", name=told)).to_be_visible()
+    went_on = "You went on in another tab"
+    expect(first.get_by_role("heading", name=went_on)).to_be_visible()
     first.locator("#other-tab").focus()
     first.keyboard.press("Space")
     assert first.locator("#stage").get_attribute("data-phase") == "paused"
@@ -40,10 +41,17 @@ def test_whoever_went_on_in_another_browser_is_told_here(site: Site, visit: Visi
     link = "/?PROLIFIC_PID=5f1e0c2a9b3d4e6f7a8b9c0d&STUDY_ID=s1&SESSION_ID=t1"
     here = visit()
     walk.reach_trials(here, link)
-    walk.play(here)
+    walk.play(here, 3 * STEP_MS)
     elsewhere = visit()
     elsewhere.goto(link)
     walk.phase(elsewhere, "paused")
     expect(here.get_by_role("heading", level=1)).to_have_text("You went on in another browser")
     (row,) = site.trials()
     assert row["stop_time_ms"] is None
+    state = elsewhere.evaluate("fetch('/api/trial').then(reply => reply.json())")
+    assert state["trial"]["position_ms"] >= 3 * STEP_MS
+    elsewhere.click("#play")
+    walk.phase(elsewhere, "moving")
+    walk.stop(elsewhere)
+    (row,) = site.trials()
+    assert row["stop_time_ms"] >= 3 * STEP_MS

@@ -128,6 +128,23 @@ def test_a_hidden_tab_pauses_and_motion_time_does_not_run(site: Site, visit: Vis
     assert logged == ["hidden", "visible", "continued"]
 
 
+def test_a_frozen_page_pauses_where_it_froze(visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    walk.play(page, STEP_MS)
+    page.evaluate(
+        "() => { const until = performance.now() + 2000; while (performance.now() < until); }"
+    )
+    walk.phase(page, "paused")
+    reached = page.evaluate(
+        """() => {
+            const name = Object.keys(localStorage).find(name => name.endsWith(":reached"));
+            return JSON.parse(localStorage[name]).position_ms;
+        }"""
+    )
+    assert STEP_MS <= reached < 1500
+
+
 def test_reduced_motion_is_honoured_and_stored(site: Site, visit: Visit):
     page = visit(reduced_motion="reduce")
     walk.reach_trials(page)

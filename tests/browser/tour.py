@@ -41,10 +41,10 @@ def _practice_and_rounds(page: Page) -> Iterator[str]:
     walk.answer(page, "A", 3)
     page.locator("#control").wait_for()
     yield "control question"
-    walk.post(page, "/practice", messages.WRONG_ANSWER)
+    walk.post(page, "/practice", messages.control("end"))
     page.goto("/practice")
     yield "control question, second try"
-    walk.post(page, "/practice", messages.RIGHT_ANSWER)
+    walk.post(page, "/practice", messages.control("know", 2))
     page.goto("/trial")
     walk.ready(page)
     yield "round, ready"
@@ -77,11 +77,16 @@ def _practice_and_rounds(page: Page) -> Iterator[str]:
 def _endings(page: Page) -> Iterator[str]:
     page.goto("/withdraw")
     yield "withdraw"
-    walk.send(page, "/api/trials/1/answered", messages.answered("C"))
+    trial = walk.trial(page)
+    body = messages.answered("C", trial["stop_time_ms"])
+    walk.send(page, "/api/trials/1/answered", body)
     for index in range(2, 11):
-        walk.send(page, f"/api/trials/{index}/played", messages.played())
-        walk.send(page, f"/api/trials/{index}/stopped", messages.stopped(150.0 * index))
-        walk.send(page, f"/api/trials/{index}/answered", messages.answered("ABCDEF"[index % 6]))
+        ticket = walk.trial(page)["ticket"]
+        stop_time_ms = 150.0 * index
+        walk.send(page, f"/api/trials/{index}/played", messages.played(ticket))
+        walk.send(page, f"/api/trials/{index}/stopped", messages.stopped(stop_time_ms))
+        body = messages.answered("ABCDEF"[index % 6], stop_time_ms)
+        walk.send(page, f"/api/trials/{index}/answered", body)
     page.goto("/end")
     yield "completed"
     walk.post(page, "/withdraw", {})
@@ -89,8 +94,8 @@ def _endings(page: Page) -> Iterator[str]:
     yield "withdrawn"
     page.context.clear_cookies()
     walk.reach_practice(page, LINK.format("5f1e0c2a9b3d4e6f7a8b9c02"))
-    walk.post(page, "/practice", messages.WRONG_ANSWER)
-    walk.post(page, "/practice", messages.WRONG_ANSWER)
+    for attempt in (1, 2):
+        walk.post(page, "/practice", messages.control("end", attempt))
     page.goto("/end")
     yield "screened out"
     page.context.clear_cookies()
