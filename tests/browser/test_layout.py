@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import FloatRect, Page, expect
 
 from app.settings import Settings
 from tests import messages
@@ -50,12 +50,12 @@ def test_late_saving_moves_nothing_and_is_silent_while_the_robot_moves(
     assert tops(page) == before
 
 
-def boxes(page: Page) -> tuple[dict[str, float], dict[str, float]]:
+def boxes(page: Page) -> tuple[FloatRect, FloatRect]:
     maze = page.locator("#maze").bounding_box()
     panel = page.locator(".panel").bounding_box()
     assert maze
     assert panel
-    return dict(maze), dict(panel)
+    return maze, panel
 
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
