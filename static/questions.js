@@ -1,5 +1,7 @@
 // The two questions after a stop: which area, and how sure. By pointer, by keyboard, or on the maze.
 
+import { tenths } from "./storage.js";
+
 const PLAIN = (event) => !event.repeat && !event.ctrlKey && !event.metaKey && !event.altKey;
 
 export class Questions {
@@ -114,8 +116,8 @@ export class Questions {
     this.#onAnswer({
       guess,
       confidence: Number(confidence),
-      guess_latency_ms: Math.max(0, this.#times.guess),
-      confidence_latency_ms: Math.max(0, this.#times.confidence),
+      guess_latency_ms: tenths(Math.max(0, this.#times.guess)),
+      confidence_latency_ms: tenths(Math.max(0, this.#times.confidence)),
     }, event.timeStamp);
   }
 }

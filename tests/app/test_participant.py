@@ -67,6 +67,21 @@ def test_each_ending_has_a_code_of_its_own(settings, ending, code):
     assert f"https://app.prolific.com/submissions/complete?cc={code}" in page
 
 
+def test_a_preview_says_on_every_page_that_it_is_left_out_of_the_data(browser):
+    browser.consent("?preview=1")
+    assert "left out of the data" in browser.get("/about-you").text
+
+
+def test_a_participant_is_told_nothing_of_previews(browser):
+    browser.consent()
+    assert "Preview" not in browser.get("/about-you").text
+
+
+def test_without_a_contact_no_page_offers_one(browser):
+    assert "mailto:" not in browser.get("/").text
+    assert "Questions?" not in browser.get("/").text
+
+
 def test_an_unanswered_control_question_is_asked_again(browser):
     browser.reach_practice()
     assert browser.post("/practice").headers["location"] == "/practice"
