@@ -18,7 +18,7 @@ Ending = Literal["completed", "no_consent", "screened_out", "failed", "withdrawn
 
 
 class Settings(BaseSettings):
-    """All settings with their defaults; `goalguess serve --help` points to README's table."""
+    """All settings with their defaults; a test holds README's table equal to them."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True)
 
@@ -30,7 +30,9 @@ class Settings(BaseSettings):
         description="List of withdrawn participants, by which a restored backup drops them "
         "again (default: beside the database, ending in .withdrawn).",
     )
-    study_open: bool = Field(True, description="Whether new participants may begin.")
+    study_open: bool = Field(
+        True, description="Whether new participants may begin, and finished ones still withdraw."
+    )
     researchers: str = Field("", description="Who runs the study, as the consent page says it.")
     contact: str = Field("", description="How participants reach the researchers.")
     seed: Annotated[int, Field(ge=0, lt=2**63)] | None = Field(
