@@ -64,11 +64,15 @@ def has_place(connection: Connection, participant: Record) -> bool:
     return repository.place_of(connection, participant.id) is not None
 
 
-def deal(connection: Connection, study: Study, participant: Record) -> Record:
-    """The participant's place, dealt now if they have none; late unplayed places go first."""
-    place = repository.place_of(connection, participant.id)
-    if place:
-        return place
+def deal_again(connection: Connection, study: Study, token: str | None) -> None:
+    """Deal a place to a participant at the trials whose place went to somebody else."""
+    participant = participant_of(connection, token)
+    if participant.step == Step.TRIALS and not has_place(connection, participant):
+        deal(connection, study, participant)
+
+
+def deal(connection: Connection, study: Study, participant: Record) -> None:
+    """Deal a place to a participant who has none; late unplayed places are given back first."""
     late = repository.now() - timedelta(minutes=study.settings.place_minutes)
     repository.free_unplayed_places(connection, participant.stream, late)
     place = repository.free_place(connection, participant.stream)
@@ -78,7 +82,6 @@ def deal(connection: Connection, study: Study, participant: Record) -> Record:
         assert place is not None
     repository.give_place(connection, place, participant.id)
     note(connection, study, participant, "dealt", {"place": place.number})
-    return place
 
 
 def fail(connection: Connection, study: Study, token: str | None) -> None:

@@ -145,9 +145,9 @@ async def answer_control(request: Request) -> Response:
 async def trial(request: Request) -> Response:
     """The page that runs all trials; whoever lost their place is dealt a new one."""
     participant = await participant_at(request, Step.TRIALS)
-    at = services(request)
+    at, token = services(request), token_of(request)
     if not await at.database.read(lambda c: enrolment.has_place(c, participant)):
-        await at.database.write(lambda c: enrolment.deal(c, at.study, participant))
+        await at.database.write(lambda c: enrolment.deal_again(c, at.study, token))
     return page(request, "trial.html", participant=participant)
 
 
