@@ -82,13 +82,17 @@ class Stopped(Message):
 
 
 class Answered(Message):
-    """Area and confidence were chosen, having stopped at `stop_time_ms`."""
+    """Area and confidence were chosen, having stopped at `stop_time_ms`.
+
+    A page that was loaded before an upgrade does not say whether the pointer moved.
+    """
 
     stop_time_ms: Milliseconds
     guess: Annotated[str, Field(pattern=r"^[A-Z]$")]
     confidence: Annotated[int, Field(ge=1, le=7)]
     guess_latency_ms: Milliseconds
     confidence_latency_ms: Milliseconds
+    pointer_moved: bool | None = None
 
 
 class Logged(Message):

@@ -165,6 +165,7 @@ trials = Table(
     Column("confidence", Integer),
     Column("guess_latency_ms", Float),
     Column("confidence_latency_ms", Float),
+    Column("pointer_moved", Boolean),
 )
 """A row begins with the first frame played, gets its stop, then its answer; nothing is replaced.
 

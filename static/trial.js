@@ -10,6 +10,7 @@ import { Tabs } from "./tabs.js";
 const byId = (id) => document.getElementById(id);
 const OURS = `goalguess:${document.body.dataset.participant ?? ""}`;
 const REACHED = `${OURS}:reached`; // how far the robot of the present round has come
+const POINTED = `${OURS}:pointed`; // the last round in which the pointer was moved
 const ANSWER_WAITS = "Saving … keep this page open; your answer is safe on this device.";
 const OFFLINE = "No connection … trying again.";
 
@@ -17,6 +18,7 @@ const stage = byId("stage");
 let outbox = null; // there is one while this tab is the active one
 let trial = null;
 let focusLosses = 0;
+let pointerMoved = false;
 
 const player = new Player(stage, {
   firstFrame: played,
@@ -67,6 +69,7 @@ function show(state) {
   const kept = read(REACHED);
   const mine = kept?.index === trial.index ? kept : null;
   focusLosses = mine?.focus_losses ?? 0;
+  pointerMoved = read(POINTED) === trial.index;
   if (trial.phase === "asking") {
     player.load(trial.playback, { stoppedMs: trial.stop_time_ms });
     questions.ask(trial.playback, performance.now());
@@ -147,7 +150,8 @@ async function stopped(time) {
 async function answered(answer, time) {
   byId("next").setAttribute("aria-busy", "true");
   outbox.log("answered", {}, time);
-  const reply = await tell("answered", { ...answer, stop_time_ms: trial.stop_time_ms });
+  const { stop_time_ms } = trial;
+  const reply = await tell("answered", { ...answer, stop_time_ms, pointer_moved: pointerMoved });
   byId("next").removeAttribute("aria-busy");
   show(reply);
   if (!reply.trial) return;
@@ -198,6 +202,14 @@ addEventListener("blur", (event) => {
   outbox?.log("focus_lost", {}, event.timeStamp);
 });
 addEventListener("focus", (event) => outbox?.log("focus_gained", {}, event.timeStamp));
+
+for (const type of ["pointermove", "pointerdown"]) {
+  addEventListener(type, (event) => {
+    if (!trial || pointerMoved || !event.isTrusted) return;
+    pointerMoved = true;
+    write(POINTED, trial.index);
+  });
+}
 
 let resizing = 0;
 addEventListener("resize", () => {

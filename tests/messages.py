@@ -63,5 +63,6 @@ def answered(guess: str, stop_time_ms: float, confidence: int = 5) -> Body:
         "confidence": confidence,
         "guess_latency_ms": 1200.5,
         "confidence_latency_ms": 800,
+        "pointer_moved": True,
         "events": [event("answered")],
     }

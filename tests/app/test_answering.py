@@ -41,14 +41,25 @@ def test_all_facts_of_a_trial_are_stored(browser, rows):
     browser.stop(
         1, 4321.5, pauses=2, paused_ms=900, focus_losses=1, frames_dropped=3, reduced_motion=True
     )
-    browser.answer(1, "C", confidence=6)
+    browser.answer(1, "C", confidence=6, pointer_moved=False)
     (row,) = rows(trials)
     assert (row.stop_time_ms, row.reached_end, row.guess, row.confidence) == (4321.5, False, "C", 6)
     assert (row.pauses, row.paused_ms, row.focus_losses, row.frames_dropped) == (2, 900, 1, 3)
     assert row.reduced_motion is True
     assert (row.guess_latency_ms, row.confidence_latency_ms) == (1200.5, 800)
+    assert row.pointer_moved is False
     assert row.played_at <= row.stopped_at <= row.answered_at
     assert (row.step_ms, row.lead_in_ms) == (1000, 1500)
+
+
+def test_a_page_loaded_before_an_upgrade_does_not_say_whether_the_pointer_moved(browser, rows):
+    browser.reach_trials()
+    browser.play(1)
+    browser.stop(1, 3000)
+    answer = messages.answered("A", 3000)
+    del answer["pointer_moved"]
+    assert browser.send("/api/trials/1/answered", answer).status_code == 200
+    assert rows(trials)[0].pointer_moved is None
 
 
 def test_the_device_is_stored_with_the_first_frame_played(browser, rows):

@@ -15,6 +15,18 @@ from app.errors import DatabaseMismatch
 from app.schema import HEAD, prepare
 from app.tables import metadata
 
+ROWS_OF_THE_FIRST_VERSION = """
+    INSERT INTO studies VALUES ('study', '{}', 'pool', '2025-03-01 09:00:00.000000');
+    INSERT INTO participants (id, pseudonym, stream, step, study_hash, app_version, control_tries)
+        VALUES (1, 'ada', 'participant', 'trials', 'study', '0.1.0', 1);
+    INSERT INTO trials (participant_id, trial_index, stimulus, study_hash, app_version, step_ms,
+            length_ms, lead_in_ms, played_at, position_ms, answered_at, guess)
+        VALUES (1, 1, 'one', 'study', '0.1.0', 1000, 20000, 1500, '2025-03-01 09:10:00.000000', 0,
+                '2025-03-01 09:10:20.000000', 'A'),
+            (1, 2, 'two', 'study', '0.1.0', 1000, 18000, 1500, '2025-03-01 09:11:00.000000', 0,
+                NULL, NULL);
+"""
+
 
 def prepare_file(file: Path) -> None:
     prepare(f"sqlite:///{file}", str(file))
@@ -39,6 +51,21 @@ def test_preparing_again_changes_nothing(tmp_path):
     before = file.read_bytes()
     prepare_file(file)
     assert file.read_bytes() == before
+
+
+def test_a_database_of_the_first_version_is_upgraded_and_keeps_its_rows(tmp_path, monkeypatch):
+    file = tmp_path / "older.sqlite"
+    with monkeypatch.context() as patched:
+        patched.setattr(app.schema, "HEAD", "0001")
+        prepare_file(file)
+    with sqlite3.connect(file) as connection:
+        connection.executescript(ROWS_OF_THE_FIRST_VERSION)
+        before = connection.execute("SELECT * FROM trials").fetchall()
+    prepare_file(file)
+    with sqlite3.connect(file) as connection:
+        after = connection.execute("SELECT * FROM trials").fetchall()
+    assert len(before) == 2
+    assert after == [(*row, None) for row in before]  # whether the pointer moved is not known
 
 
 def test_a_database_of_an_unknown_version_is_refused_and_not_touched(tmp_path):

@@ -145,6 +145,50 @@ def test_a_frozen_page_pauses_where_it_froze(visit: Visit):
     assert STEP_MS <= reached < 1500
 
 
+def test_the_pointer_counts_as_moved_from_its_first_move_in_the_round_on(site: Site, visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    for moves in (False, True, False):  # in the last round it lies still where it was left
+        if moves:
+            page.mouse.move(100, 100)
+            page.mouse.move(200, 200)
+        page.keyboard.press("Space")
+        walk.moved(page, STEP_MS)
+        page.reload()
+        walk.phase(page, "paused")
+        page.keyboard.press("Space")
+        walk.moved(page, 2 * STEP_MS)
+        page.keyboard.press("Space")
+        walk.phase(page, "stopped")
+        for key in ("c", "5", "Enter"):
+            page.keyboard.press(key)
+        walk.ready(page)
+    assert [row["pointer_moved"] for row in site.trials()] == [0, 1, 0]
+
+
+def test_a_script_that_acts_on_the_page_moves_no_pointer(site: Site, visit: Visit):
+    page = visit()
+    walk.reach_trials(page)
+    walk.ready(page)
+    page.evaluate("""() => {
+        const play = document.querySelector("#play");
+        for (const type of ["pointermove", "pointerdown"]) {
+            play.dispatchEvent(new PointerEvent(type, { bubbles: true }));
+        }
+        play.click();
+    }""")
+    walk.moved(page, STEP_MS)
+    page.evaluate("document.querySelector('#play').click()")
+    walk.phase(page, "stopped")
+    page.evaluate("""() => {
+        document.querySelector("input[name=guess]").click();
+        document.querySelector("input[name=confidence]").click();
+        document.querySelector("#next").click();
+    }""")
+    walk.round_is(page, 2)
+    assert [row["pointer_moved"] for row in site.trials()] == [0]
+
+
 def test_reduced_motion_is_honoured_and_stored(site: Site, visit: Visit):
     page = visit(reduced_motion="reduce")
     walk.reach_trials(page)
