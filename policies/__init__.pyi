@@ -34,6 +34,7 @@ from .pool import load_pool as load_pool
 from .pool import parse_pool as parse_pool
 from .rollout import Rollout as Rollout
 from .rollout import draw_rollout as draw_rollout
+from .scenes import scene_maze as scene_maze
 from .solvers import Solution as Solution
 from .solvers import distances as distances
 from .solvers import evaluate as evaluate
