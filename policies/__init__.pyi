@@ -1,5 +1,6 @@
 from .certificate import Certificate as Certificate
 from .certificate import certify as certify
+from .choices import first_decision as first_decision
 from .cli import commands as commands
 from .errors import MazeError as MazeError
 from .errors import ModelError as ModelError
