@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from analysis import commands as analysis_commands
+from app.bots.kinds import DEFAULT_MIX, Kind, read_mix
 from policies import commands as policies_commands
 
 commands = typer.Typer(
@@ -54,6 +55,45 @@ def serve(
         for gap in settings.gaps:
             typer.echo(f"Not set: {gap}", err=True)
         server.run(sockets=[listener])
+
+
+@commands.command()
+def simulate(
+    participants: Annotated[int, typer.Option(min=1, help="How many take part.")] = 150,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same rows.")] = 1,
+    url: Annotated[
+        str | None,
+        typer.Option(help="Address of a running study; without it, none need be running."),
+    ] = None,
+    mix: Annotated[
+        str, typer.Option(help=f"Kinds and their shares, of: {', '.join(Kind)}.")
+    ] = DEFAULT_MIX,
+    at_once: Annotated[int, typer.Option(min=1, help="How many are on the way at once.")] = 20,
+) -> None:
+    """Let simulated participants take the whole study, marked as such in their rows.
+
+    They see what the pages are sent and nothing else: noisy Bayesian observers, among them some
+    who guess, drop out, reload, lose the connection, come back or withdraw. Without --url they
+    write to the file GOALGUESS_DATABASE_URL names; a new file is dealt from the same seed.
+
+    Example: goalguess simulate --participants 20 --mix attentive=8,dropping_out=1
+    """
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from app.bots.crowd import draw_bots, run
+    from app.bots.summary import summary
+    from app.settings import load_settings
+
+    bots = draw_bots(participants, seed, read_mix(mix))
+    settings = load_settings()
+    if settings.seed is None and not settings.database_file.exists():
+        settings = settings.model_copy(update={"seed": seed})
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("Taking part", total=len(bots))
+        outcomes = run(bots, url or settings, at_once, lambda _outcome: progress.advance(task))
+    typer.echo(summary(outcomes))
+    typer.echo("goalguess export --simulated --to DIR writes what they left.", err=True)
 
 
 @commands.command()
