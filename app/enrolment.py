@@ -75,13 +75,11 @@ def deal(connection: Connection, study: Study, participant: Record) -> None:
     """Deal a place to a participant who has none; late unplayed places are given back first."""
     late = repository.now() - timedelta(minutes=study.settings.place_minutes)
     repository.free_unplayed_places(connection, participant.stream, late)
-    place = repository.free_place(connection, participant.stream)
+    place = repository.give_free_place(connection, participant.stream, participant.id)
     if place is None:
         _add_block(connection, study, participant.stream)
-        place = repository.free_place(connection, participant.stream)
-        assert place is not None
-    repository.give_place(connection, place, participant.id)
-    note(connection, study, participant, "dealt", {"place": place.number})
+        place = repository.give_free_place(connection, participant.stream, participant.id)
+    note(connection, study, participant, "dealt", {"place": place})
 
 
 def fail(connection: Connection, study: Study, token: str | None) -> None:

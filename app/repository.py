@@ -1,8 +1,7 @@
 """Every query about a participant; those about the whole study are in `books`.
 
-Functions take an open connection and plain values, and apply no rules.
-
-Statements that run on every answer are built once: building one takes longer than running it.
+Functions take an open connection and plain values, and apply no rules. Statements that run for
+everybody are built once: building one takes longer than running it.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -55,11 +54,12 @@ def participant_recruited(connection: Connection, stream: str, recruiter_id: str
     ).one_or_none()
 
 
+_ARRIVED = select(participants).where(participants.c.arrival == bindparam("arrival"))
+
+
 def participant_arrived(connection: Connection, arrival: str) -> Record | None:
     """The participant made from one showing of the consent form."""
-    return connection.execute(
-        select(participants).where(participants.c.arrival == arrival)
-    ).one_or_none()
+    return connection.execute(_ARRIVED, {"arrival": arrival}).one_or_none()
 
 
 def participant_named(connection: Connection, pseudonym: str) -> Record | None:
@@ -69,26 +69,29 @@ def participant_named(connection: Connection, pseudonym: str) -> Record | None:
     ).one_or_none()
 
 
+_ADD_PARTICIPANT = insert(participants).returning(participants)
+
+
 def add_participant(connection: Connection, **values: Any) -> Record:
     """A new participant, as stored."""
-    return connection.execute(insert(participants).values(**values).returning(participants)).one()
+    return connection.execute(_ADD_PARTICIPANT, values).one()
 
 
 def add_recruit(connection: Connection, **values: Any) -> None:
     """Keep the recruiter's ids of a participant."""
-    connection.execute(insert(recruits).values(**values))
+    connection.execute(insert(recruits), values)
+
+
+_END_SESSIONS = (
+    update(sessions).where(sessions.c.participant_id == bindparam("of")).values(current=False)
+)
 
 
 def begin_session(connection: Connection, participant_id: int, token_hash: str) -> None:
     """Make this the participant's current session; older ones stay, to be told so."""
-    connection.execute(
-        update(sessions).where(sessions.c.participant_id == participant_id).values(current=False)
-    )
-    connection.execute(
-        insert(sessions).values(
-            token_hash=token_hash, participant_id=participant_id, current=True, began_at=now()
-        )
-    )
+    connection.execute(_END_SESSIONS, {"of": participant_id})
+    session = {"token_hash": token_hash, "current": True, "began_at": now()}
+    connection.execute(insert(sessions), {"participant_id": participant_id, **session})
 
 
 @lru_cache
@@ -107,7 +110,7 @@ def add_demographics(
     connection: Connection, participant_id: int, answers: Mapping[str, str | int | None]
 ) -> None:
     """Keep what participants said about themselves."""
-    connection.execute(insert(demographics).values(participant_id=participant_id, **answers))
+    connection.execute(insert(demographics), {"participant_id": participant_id, **answers})
 
 
 def erase(connection: Connection, participant_id: int) -> None:
@@ -130,14 +133,24 @@ def place_of(connection: Connection, participant_id: int) -> Record | None:
     return connection.execute(_PLACE_OF, {"participant_id": participant_id}).one_or_none()
 
 
-def free_place(connection: Connection, stream: str) -> Record | None:
-    """The free place with the lowest number: those given back come before those never dealt."""
-    return connection.execute(
-        select(places)
-        .where(places.c.stream == stream, places.c.dealt_at.is_(None))
-        .order_by(places.c.number)
-        .limit(1)
-    ).one_or_none()
+_lowest_free = (
+    select(func.min(places.c.number))
+    .where(places.c.stream == bindparam("of"), places.c.dealt_at.is_(None))
+    .scalar_subquery()
+)
+_GIVE_FREE_PLACE = (
+    update(places)
+    .where(places.c.stream == bindparam("of"), places.c.number == _lowest_free)
+    .values(participant_id=bindparam("to"), dealt_at=bindparam("at"))
+    .returning(places.c.number)
+)
+
+
+def give_free_place(connection: Connection, stream: str, participant_id: int) -> int | None:
+    """Deal the lowest free number, so those given back first; None when there is none."""
+    dealing = {"of": stream, "to": participant_id, "at": now()}
+    number: int | None = connection.scalar(_GIVE_FREE_PLACE, dealing)
+    return number
 
 
 def count_places(connection: Connection, stream: str) -> int:
@@ -153,27 +166,20 @@ def add_places(connection: Connection, rows: Iterable[Mapping[str, Any]]) -> Non
     connection.execute(insert(places), list(rows))
 
 
-def give_place(connection: Connection, place: Record, participant_id: int) -> None:
-    """Deal a free place to a participant."""
-    connection.execute(
-        update(places)
-        .where(places.c.stream == place.stream, places.c.number == place.number)
-        .values(participant_id=participant_id, dealt_at=now())
-    )
-
-
-def free_unplayed_places(
-    connection: Connection, stream: str, dealt_before: datetime
-) -> Sequence[int]:
-    """Take back the places dealt before a time and never played; returns who had them."""
-    late = (
-        places.c.stream == stream,
+_FREE_UNPLAYED = (
+    update(places)
+    .where(
+        places.c.stream == bindparam("of"),
         places.c.played_at.is_(None),
-        places.c.dealt_at < dealt_before,
+        places.c.dealt_at < bindparam("before"),
     )
-    had = connection.scalars(select(places.c.participant_id).where(*late)).all()
-    connection.execute(update(places).where(*late).values(participant_id=None, dealt_at=None))
-    return had
+    .values(participant_id=None, dealt_at=None)
+)
+
+
+def free_unplayed_places(connection: Connection, stream: str, dealt_before: datetime) -> None:
+    """Take back the places dealt before a time and never played."""
+    connection.execute(_FREE_UNPLAYED, {"of": stream, "before": dealt_before})
 
 
 def free_unplayed_place_of(connection: Connection, participant_id: int) -> None:
