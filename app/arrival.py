@@ -141,6 +141,7 @@ def consent(
     return begin_session(connection, study, participant, "consented", user_agent)
 
 
-def decline(connection: Connection) -> None:
-    """Count somebody who gave no consent; nothing else is kept of them."""
-    books.tally(connection, "arrived, no consent")
+def decline(connection: Connection, link: Link) -> None:
+    """Count somebody who gave no consent, unless a pilot; nothing else is kept of them."""
+    if link.stream == PARTICIPANT:
+        books.tally(connection, "arrived, no consent")

@@ -58,13 +58,13 @@ async def consent(request: Request) -> Response:
     """Yes makes the participant; no is only counted."""
     form = await _form(request)
     at, old_token, agent = services(request), token_of(request), _user_agent(request)
+    link = Link.read(form)
     if form.get("decision") != "yes":
-        await at.database.write(arrival.decline)
+        await at.database.write(lambda c: arrival.decline(c, link))
         return see("/no-consent")
     nonce = form.get("arrival", "")
     if not 16 <= len(nonce) <= 64:
         raise InvalidInput("arrival: expected the hidden field of the consent page.")
-    link = Link.read(form)
     token = await at.database.write(
         lambda c: arrival.consent(c, at.study, nonce, link, old_token, agent)
     )
@@ -146,9 +146,10 @@ async def trial(request: Request) -> Response:
     """The page that runs all trials; whoever lost their place is dealt a new one."""
     participant = await participant_at(request, Step.TRIALS)
     at, token = services(request), token_of(request)
-    if not await at.database.read(lambda c: enrolment.has_place(c, participant)):
+    placed = await at.database.read(lambda c: enrolment.has_place(c, participant))
+    if not placed:
         await at.database.write(lambda c: enrolment.deal_again(c, at.study, token))
-    return page(request, "trial.html", participant=participant)
+    return page(request, "trial.html", {"dealt_again": not placed}, participant)
 
 
 @router.get("/end")

@@ -32,11 +32,16 @@ class Refused(AppError):
 
 @dataclass(frozen=True)
 class Page:
-    """A page as it came, from the path where redirects ended; `at_home` unless it is an error."""
+    """A page as it came, with the address where redirects ended; `at_home` unless an error."""
 
-    path: str
+    address: str
     at_home: bool
     html: str
+
+    @property
+    def path(self) -> str:
+        """The address without its query."""
+        return self.address.partition("?")[0]
 
     @property
     def form(self) -> Form:
@@ -60,9 +65,9 @@ class Browser:
             "user-agent": "goalguess simulate",
         }
 
-    async def open(self, path: str, **query: str) -> Page:
+    async def open(self, address: str) -> Page:
         """A page, wherever the server leads."""
-        return _page(await self._patiently("GET", path, params=query or None))
+        return _page(await self._patiently("GET", address))
 
     async def submit(self, form: Form, values: Mapping[str, str]) -> Page:
         """Send a form with its hidden fields; the page that follows."""
@@ -97,7 +102,7 @@ def _page(reply: Response) -> Page:
     # 409 is a page for people: the study is closed, or went on in another browser.
     if reply.status_code not in (200, 409):
         raise Refused(reply)
-    return Page(reply.url.path, reply.status_code == 200, reply.text)
+    return Page(reply.url.raw_path.decode("ascii"), reply.status_code == 200, reply.text)
 
 
 def _state(reply: Response) -> dict[str, Any]:

@@ -38,6 +38,10 @@ class Visit:
         finally:
             await self.turn.dealt()
 
+    @property
+    def _link(self) -> str:
+        return f"/?PROLIFIC_PID={self.bot.recruiter_id}&simulated=1"
+
     async def _walk(self) -> str:
         act: dict[str, Callable[[Page], Awaitable[Page]]] = {
             CONSENT: self._consent,
@@ -46,14 +50,14 @@ class Visit:
             "/practice": self._practise,
             "/trial": self._play,
         }
-        page = await self.browser.open("/", PROLIFIC_PID=self.bot.recruiter_id, simulated="1")
+        page = await self.browser.open(self._link)
         for _ in range(MOST_PAGES):
             if page.at_home:
                 await self._reach(page.path)
             if page.path not in act or not page.at_home:
                 return page.heading
             if self.bot.kind == Kind.RELOADING and self.bot.happens(TROUBLE):
-                page = await self.browser.open(page.path)
+                page = await self.browser.open(page.address)
             page = await act[page.path](page)
         raise AssertionError(f"{MOST_PAGES} pages and no end, the last one {page.path}")
 
@@ -98,7 +102,7 @@ class Visit:
             page = await self.browser.submit(page.form, {})
             raise _Left(page.heading)
         if moment == CONSENT:
-            page = await self.browser.open(CONSENT)
+            page = await self.browser.open(self._link)
             page = await self.browser.submit(page.form, {"decision": "no"})
             raise _Left(page.heading)
         raise _Left(LEFT)

@@ -40,6 +40,13 @@ def test_no_consent_keeps_an_anonymous_count_and_nothing_else(browser, rows):
     assert rows(participants) == rows(recruits) == rows(events) == rows(sessions) == []
 
 
+@pytest.mark.parametrize("pilot", ["preview", "simulated"])
+def test_a_pilots_no_is_not_counted_among_those_who_gave_no_consent(browser, rows, pilot):
+    reply = browser.post("/consent", {"decision": "no", pilot: "1"})
+    assert location(reply) == "/no-consent"
+    assert rows(tallies) == []
+
+
 def test_consent_makes_a_participant_with_the_hash_of_the_text_agreed_to(browser, rows, study):
     assert location(browser.consent(PROLIFIC)) == "/about-you"
     (participant,) = rows(participants)

@@ -9,15 +9,11 @@ Starts a server of its own on a temporary database, sends it what participants' 
 import argparse
 import asyncio
 import json
-import os
 import re
 import sqlite3
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -25,6 +21,7 @@ from urllib.parse import urlencode
 import numpy as np
 
 from tests import messages
+from tests.server_process import ServerProcess
 
 FORM = "application/x-www-form-urlencoded"
 Times = dict[str, list[float]]
@@ -120,21 +117,6 @@ async def all_take_part(port: int, participants: int, at_once: int, seed: int) -
     return times_ms
 
 
-@contextmanager
-def serving(database: Path) -> Iterator[tuple[int, int]]:
-    """A server in a process of its own: its port and its process id."""
-    environment = {**os.environ, "GOALGUESS_DATABASE_URL": f"sqlite:///{database}"}
-    command = [sys.executable, "-u", "-m", "app.cli", "serve", "--port", "0"]
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as server:
-        assert server.stdout
-        announced = (re.search(r"http://[^:]+:(\d+)/", line) for line in server.stdout)
-        port = next(int(found[1]) for found in announced if found)
-        try:
-            yield port, server.pid
-        finally:
-            server.terminate()
-
-
 def memory_mb(pid: int) -> float:
     """Resident memory of a process, MB; nan where /proc is missing."""
     status = Path(f"/proc/{pid}/status")
@@ -150,14 +132,14 @@ def main() -> None:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         database = Path(folder) / "load.sqlite"
-        with serving(database) as (port, pid):
-            asyncio.run(all_take_part(port, 5, 5, given.seed))
+        with ServerProcess(database) as server:
+            asyncio.run(all_take_part(server.port, 5, 5, given.seed))
             began = time.perf_counter()
             times_ms = asyncio.run(
-                all_take_part(port, given.participants, given.at_once, given.seed)
+                all_take_part(server.port, given.participants, given.at_once, given.seed)
             )
             seconds = time.perf_counter() - began
-            memory = memory_mb(pid)
+            memory = memory_mb(server.pid)
         with sqlite3.connect(database) as connection:
             query = "SELECT count(*) FROM trials WHERE answered_at IS NOT NULL"
             stored = connection.execute(query).fetchone()[0]

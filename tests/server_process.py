@@ -1,0 +1,61 @@
+"""The study in a process of its own, as `goalguess serve` runs it: to be measured and killed."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import TracebackType
+
+
+class ServerProcess:
+    """A server on a database file; once started, it keeps its port over every restart."""
+
+    def __init__(self, database: Path, **settings: str) -> None:
+        variables = {"database_url": f"sqlite:///{database}", **settings}
+        named = {f"GOALGUESS_{name.upper()}": value for name, value in variables.items()}
+        self._environment = {**os.environ, **named}
+        self.port = 0
+
+    def __enter__(self) -> "ServerProcess":
+        self.start()
+        return self
+
+    def __exit__(
+        self,
+        _kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        self._process.terminate()
+        self._ended()
+
+    @property
+    def url(self) -> str:
+        """The address of the study."""
+        return f"http://127.0.0.1:{self.port}/"
+
+    @property
+    def pid(self) -> int:
+        """The process that serves now."""
+        return self._process.pid
+
+    def start(self) -> None:
+        """Serve, and return when requests are answered."""
+        command = [sys.executable, "-u", "-m", "app.cli", "serve", "--port", str(self.port)]
+        self._process = subprocess.Popen(
+            command, env=self._environment, stdout=subprocess.PIPE, text=True
+        )
+        assert self._process.stdout
+        announced = (re.search(r"http://[^:]+:(\d+)/", line) for line in self._process.stdout)
+        self.port = next(int(found[1]) for found in announced if found)
+
+    def kill(self) -> None:
+        """End it as a crash does: nothing is finished, nothing is said."""
+        self._process.kill()
+        self._ended()
+
+    def _ended(self) -> None:
+        assert self._process.stdout
+        self._process.stdout.close()
+        self._process.wait()
