@@ -6,6 +6,8 @@ two writes never race, and a slow disk costs latency, not throughput.
 """
 
 import asyncio
+import sqlite3
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from queue import Empty, SimpleQueue
@@ -33,8 +35,7 @@ class Database:
 
     def __init__(self, url: str) -> None:
         self._write_engine = sqlite_engine(url, begin="BEGIN IMMEDIATE")
-        # Lets readers go on while the writer writes; the file remembers it.
-        run_pragma(self._write_engine, "journal_mode=WAL")
+        _log_ahead(self._write_engine)
         self._read_engine = sqlite_engine(url, begin="BEGIN")
         self._reader = self._read_engine.connect()
         self._reading = Lock()
@@ -142,6 +143,21 @@ def sqlite_engine(url: str, begin: str) -> Engine:
         connection.exec_driver_sql(begin)
 
     return engine
+
+
+def _log_ahead(engine: Engine) -> None:
+    """Let readers go on while the writer writes; the file remembers it."""
+    give_up = time.monotonic() + BUSY_MS / 1000
+    while True:
+        try:
+            run_pragma(engine, "journal_mode=WAL")
+            return
+        except sqlite3.OperationalError as error:
+            # Here alone SQLite does not wait for another process that has begun to write.
+            busy = error.sqlite_errorcode == sqlite3.SQLITE_BUSY
+            if not busy or time.monotonic() > give_up:
+                raise
+            time.sleep(0.01)
 
 
 def run_pragma(engine: Engine, pragma: str) -> None:

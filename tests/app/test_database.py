@@ -1,7 +1,9 @@
 """read(fn), write(fn): durable, in one writer, each function alone to blame for its failure."""
 
 import asyncio
-from concurrent.futures import wait
+import sqlite3
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import closing
 from threading import Event
 
 import pytest
@@ -169,6 +171,18 @@ def test_two_databases_on_one_file_take_turns(bare, settings):
     assert not any(future.exception() for future in futures)
     assert len(names(bare)) == 30
     other.close()
+
+
+def test_opening_a_new_file_waits_for_another_process_that_writes_to_it(settings):
+    with (
+        closing(sqlite3.connect(settings.database_file)) as other,
+        ThreadPoolExecutor() as elsewhere,
+    ):
+        other.execute("BEGIN IMMEDIATE")
+        opening = elsewhere.submit(Database, settings.database_url)
+        assert not wait([opening], timeout=0.2).done
+        other.rollback()
+        opening.result().close()
 
 
 def test_a_write_that_was_given_up_harms_nobody_else(bare):
