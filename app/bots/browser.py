@@ -4,6 +4,7 @@ import asyncio
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from httpx2 import AsyncClient, Response, TransportError
@@ -43,7 +44,7 @@ class Page:
         """The address without its query."""
         return self.address.partition("?")[0]
 
-    @property
+    @cached_property
     def form(self) -> Form:
         """The page's form; an empty one on pages without."""
         return read_form(self.html) or Form("")

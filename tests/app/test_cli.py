@@ -2,6 +2,7 @@
 
 import os
 import socket
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -36,7 +37,7 @@ def run(*arguments, **environment):
 
 def test_the_commands_of_all_three_packages_are_one_command():
     names = {words[0] for words in all_commands()}
-    assert names == {"serve", "export", "solve", "stimuli", "analyse"}
+    assert names == {"serve", "simulate", "export", "solve", "stimuli", "analyse"}
 
 
 @pytest.mark.parametrize("words", list(all_commands()), ids=" ".join)
@@ -71,6 +72,8 @@ def test_help_loads_none_of_the_heavy_libraries():
             "expected a SQLite file",
         ),
         (["export", "--to", "out"], {"GOALGUESS_STEP_MS": "slow"}, "GOALGUESS_STEP_MS"),
+        (["simulate", "--mix", "careful=1"], {}, "--mix: expected kinds of attentive"),
+        (["simulate", "--url", "http://127.0.0.1:9/"], {}, "expected the address of a running"),
         (["serve"], {"GOALGUESS_CODES": "C1"}, "GOALGUESS_CODES: expected JSON"),
         (["serve"], {"GOALGUESS_STEPMS": "3"}, "GOALGUESS_STEPMS: expected one of"),
         (["serve"], {"GOALGUESS_SEED": "1" + 30 * "0"}, "GOALGUESS_SEED"),
@@ -94,6 +97,16 @@ def test_what_a_user_can_mend_is_one_line_and_exit_code_2(
     assert len(done.stderr.strip().splitlines()) == 1
     assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_simulated_participants_fill_a_database_of_their_own(tmp_path):
+    url = f"sqlite:///{tmp_path}/study.sqlite"
+    done = run("simulate", "--participants", 3, "--seed", 5, GOALGUESS_DATABASE_URL=url)
+    assert done.returncode == 0, done.stderr
+    assert "answers acknowledged" in done.stdout
+    with sqlite3.connect(tmp_path / "study.sqlite") as connection:
+        assert connection.execute("SELECT seed FROM randomisation").fetchall() == [(5,)]
+        assert connection.execute("SELECT count(*) FROM participants").fetchone()[0] >= 2
 
 
 def test_a_port_in_use_is_one_line_and_exit_code_2(tmp_path):

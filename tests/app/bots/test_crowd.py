@@ -42,7 +42,7 @@ def crowd(tmp_path_factory):
 @pytest.fixture(scope="module")
 def ended(crowd):
     """By kind, how often its visits ended where."""
-    by_kind = defaultdict(Counter)
+    by_kind: dict[Kind, Counter[str]] = defaultdict(Counter)
     for outcome in crowd[1]:
         by_kind[outcome.bot.kind][outcome.ended] += 1
     return by_kind
