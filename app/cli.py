@@ -89,7 +89,8 @@ def simulate(
     settings = load_settings()
     if settings.seed is None and not settings.database_file.exists():
         settings = settings.model_copy(update={"seed": seed})
-    with Progress(console=Console(stderr=True)) as progress:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("Taking part", total=len(bots))
         outcomes = run(bots, url or settings, at_once, lambda _outcome: progress.advance(task))
     typer.echo(summary(outcomes))
