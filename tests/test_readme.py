@@ -23,6 +23,14 @@ ELSEWHERE = {
     "make serve": "test_make_serve_prints_the_address_of_a_study_that_answers",
     "goalguess serve --host 0.0.0.0 --port 8000": "test_wheel, on a free port",
 }
+NEEDS = {
+    "goalguess analyse results --to report": ["goalguess export --to results"],
+    "goalguess analyse rehearsal --simulated --to rehearsal-report": [
+        "goalguess simulate --participants 8",
+        "goalguess export --to rehearsal --simulated",
+    ],
+}
+"""What must have been run before a command that reads its files."""
 BIN = Path(sys.executable).parent
 
 
@@ -43,7 +51,7 @@ def environment(folder):
 
 @pytest.fixture(scope="module")
 def recorded(folder, environment):
-    """A few simulated participants, so that there is something to export and analyse."""
+    """A few participants, so that there is something to export and analyse."""
     code = (
         "from tests.app.conftest import *\n"
         "settings = Settings(database_url='sqlite:///goalguess.sqlite', seed=1)\n"
@@ -63,9 +71,8 @@ def test_every_command_is_run_by_a_test():
 @pytest.mark.usefixtures("recorded")
 @pytest.mark.parametrize("command", [c for c in COMMANDS if c not in ELSEWHERE])
 def test_a_command_of_the_readme_works(command, folder, environment):
-    if "results --to report" in command:
-        export = ["goalguess", "export", "--to", "results"]
-        subprocess.run(export, cwd=folder, env=environment, check=True)
+    for before in NEEDS.get(command, ()):
+        subprocess.run(shlex.split(before), cwd=folder, env=environment, check=True)
     if command.startswith("goalguess stimuli build"):
         command += " --to built"
     done = subprocess.run(
