@@ -1,4 +1,5 @@
 // One tab at a time: a newcomer asks whether the study is open already, and may take over.
+// Where two claims meet, as when a browser opens two tabs in the same instant, the newer one wins.
 
 const REPLY_MS = 150;
 
@@ -6,7 +7,8 @@ export class Tabs {
   #channel;
   #on;
   #active = false;
-  #hear = null;
+  #since = 0; // when this tab claimed last; the fraction tells apart what began in one millisecond
+  #answers = () => {};
 
   /** `on`: {yield(): this tab is inactive from now on, newcomer(): another tab has asked}. */
   constructor(name, on) {
@@ -15,40 +17,46 @@ export class Tabs {
     this.#channel.onmessage = ({ data }) => this.#heard(data);
   }
 
-  /** Make this tab the active one, unless another one is. */
+  /** Make this tab the active one, unless another one is, or claims it after this one. */
   async claim() {
-    if (await this.#ask("anybody?", "here")) return false;
+    if (await this.#ask("anybody?", ({ what, since }) => what === "here" || since > this.#since)) return false;
     this.#active = true;
-    this.#channel.postMessage("mine"); // to a tab that was asleep and wakes up later
+    this.#say("mine"); // to a tab that was asleep, or has not heard the question
     return true;
   }
 
   /** Make this tab the active one; another one has put everything away when this resolves. */
   async take() {
-    await this.#ask("mine", "yours");
+    await this.#ask("mine", ({ what }) => what === "yours");
     this.#active = true;
   }
 
-  #heard(data) {
-    if (data === "anybody?" && this.#active) {
-      this.#channel.postMessage("here");
+  #heard({ what, since }) {
+    if (what === "anybody?" && this.#active) {
+      this.#say("here");
       this.#on.newcomer();
-    } else if (data === "mine" && this.#active) {
+    } else if (what === "mine" && this.#active && since > this.#since) {
       this.#active = false;
       this.#on.yield();
-      this.#channel.postMessage("yours");
-    } else this.#hear?.(data);
+      this.#say("yours");
+    } else this.#answers({ what, since });
   }
 
-  #ask(question, answer) {
+  #say(what) {
+    this.#channel.postMessage({ what, since: this.#since });
+  }
+
+  /** Whether an answer came in time; `answers(message)` tells what counts as one. */
+  #ask(question, answers) {
+    this.#since = Date.now() + Math.random();
     return new Promise((resolve) => {
       const timer = setTimeout(resolve, REPLY_MS, false);
-      this.#hear = (data) => {
-        if (data !== answer) return;
+      this.#answers = (message) => {
+        if (!answers(message)) return;
         clearTimeout(timer);
         resolve(true);
       };
-      this.#channel.postMessage(question);
+      this.#say(question);
     });
   }
 }

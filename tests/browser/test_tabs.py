@@ -1,9 +1,31 @@
 """One tab and one browser at a time."""
 
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
+from tests import messages
 from tests.browser import walk
 from tests.browser.conftest import STEP_MS, Guard, Site, Visit
+
+OPEN_ALREADY = "The study is already open in another tab"
+SETTLED = """() => document.querySelector("#stage[data-phase=ready]:not(.settling)")
+    || !document.querySelector("#other-tab").hidden"""
+# Lets tabs of one page claim the study `after` so many ms each; which of them hold it in the end?
+CLAIM = """async ([address, after, frozen_ms]) => {
+    const { Tabs } = await import(address);
+    const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+    const name = crypto.randomUUID();
+    const holders = new Set();
+    const claims = after.map(async (ms, tab) => {
+        const tabs = new Tabs(name, { yield: () => holders.delete(tab), newcomer() {} });
+        if (ms) await pause(ms);
+        if (await tabs.claim()) holders.add(tab);
+    });
+    const until = performance.now() + frozen_ms;
+    while (performance.now() < until); // neither questions nor answers get through meanwhile
+    await Promise.all(claims);
+    await pause(50);
+    return [...holders];
+}"""
 
 
 def test_a_second_tab_is_told_and_may_take_over_where_the_first_one_was(site: Site, visit: Visit):
@@ -12,8 +34,7 @@ def test_a_second_tab_is_told_and_may_take_over_where_the_first_one_was(site: Si
     walk.play(first, 2 * STEP_MS)
     second = first.context.new_page()
     second.goto("/trial")
-    told = "The study is already open in another tab"
-    expect(second.get_by_role("heading", name=told)).to_be_visible()
+    expect(second.get_by_role("heading", name=OPEN_ALREADY)).to_be_visible()
     expect(second.locator("#play")).to_be_hidden()
     second.get_by_role("button", name="Use this tab instead").click()
     walk.phase(second, "paused")
@@ -55,3 +76,41 @@ def test_whoever_went_on_in_another_browser_is_told_here(site: Site, visit: Visi
     walk.stop(elsewhere)
     (row,) = site.trials()
     assert row["stop_time_ms"] >= 3 * STEP_MS
+
+
+def test_of_tabs_that_claim_the_study_together_one_gets_it(visit: Visit):
+    page = visit()
+    page.goto("/")
+    style = page.evaluate("document.querySelector('link[rel=stylesheet]').href")
+    address = style.replace("style.css", "tabs.js")
+    for after in ([0, 0], [0, 0, 0, 0], [0, 70], [0, 140, 40], [0, 149]):
+        for frozen_ms in (0, 400):
+            holders = page.evaluate(CLAIM, [address, after, frozen_ms])
+            assert len(holders) == 1, (after, frozen_ms)
+
+
+def test_of_two_tabs_opened_in_the_same_instant_one_plays_and_the_other_is_told(
+    site: Site, visit: Visit
+):
+    one = visit()
+    walk.reach_practice(one)
+    walk.post(one, "/practice", messages.control("know"))
+    other = one.context.new_page()
+    loading: list[Route] = []
+    one.context.route("**/tabs.js", lambda route: loading.append(route))
+    for tab in (one, other):
+        tab.goto("/trial", wait_until="commit")
+    while len(loading) < 2:
+        one.wait_for_timeout(10)
+    for route in loading:
+        route.continue_()
+    for tab in (one, other):
+        tab.wait_for_function(SETTLED)
+    told = [tab for tab in (one, other) if tab.get_by_role("heading", name=OPEN_ALREADY).count()]
+    (playing,) = {one, other} - set(told)
+    playing.bring_to_front()
+    walk.play(playing)
+    walk.stop(playing)
+    walk.answer(playing, "E", 4)
+    walk.round_is(playing, 2)
+    assert [row["guess"] for row in site.trials()] == ["E"]
