@@ -18,13 +18,18 @@ export class Outbox {
   #late = false;
   #closed = false;
 
-  /** `on`: {late(paths that wait), saved() after late, refused(error): the server will not take the first message}. */
+  /** `on`: {late(), saved() after late, refused(error): the server will not take the first message}. */
   constructor(name, on) {
     this.#name = name;
     this.#on = on;
     const kept = read(name);
     this.#queue = kept?.queue ?? [];
     this.#events = kept?.events ?? [];
+  }
+
+  /** Where the queued messages are to go, in order. */
+  get waiting() {
+    return this.#queue.map((message) => message.path);
   }
 
   /** Note an event at a time of this page's own clock; it travels with the next message. */
@@ -105,7 +110,7 @@ export class Outbox {
   #tellLate() {
     if (this.#closed) return;
     this.#late = true;
-    this.#on.late(this.#queue.map((message) => message.path));
+    this.#on.late();
   }
 
   #add(path, body) {

@@ -47,14 +47,17 @@ byId("try-again").addEventListener("click", () => {
 async function start() {
   notice(null);
   outbox = new Outbox(`${OURS}:outbox`, {
-    late: (paths) => saving(paths.some((path) => path.endsWith("/answered")) ? ANSWER_WAITS : OFFLINE),
+    late: () => saving(answerWaits() ? ANSWER_WAITS : OFFLINE),
     saved: () => saving("Saved"),
     refused,
   });
+  const answerLeft = answerWaits();
+  if (answerLeft) saving(ANSWER_WAITS);
   await outbox.flush();
   try {
     show(await patiently("/api/trial", undefined, () => saving(OFFLINE)));
-    saving("");
+    if (answerLeft) saving("Saved");
+    else unsay(OFFLINE);
   } catch (error) {
     refused(error);
   }
@@ -109,6 +112,7 @@ function tell(what, body) {
 }
 
 function played(time) {
+  saving(""); // what was said before the round has been read
   keepReached(time);
   outbox.log("played", {}, time);
   tell("played", {
@@ -165,6 +169,7 @@ function refused(error) {
   const elsewhere = ["wrong_step", "place_returned", "moved"].includes(error.code);
   if (elsewhere || error.status === 401) return location.reload();
   player.pause(performance.now());
+  saving("");
   byId("trouble-detail").textContent = error.message;
   notice("trouble");
 }
@@ -174,6 +179,7 @@ function giveWay() {
   outbox.close();
   outbox = null;
   trial = null;
+  saving("");
   byId("other-tab-title").textContent = "You went on in another tab";
   notice("other-tab");
 }
@@ -185,9 +191,17 @@ function notice(id) {
   if (id) byId(id).focus();
 }
 
+function answerWaits() {
+  return outbox.waiting.some((path) => path.endsWith("/answered"));
+}
+
 function saving(text) {
   byId("saving").textContent = text;
-  if (text === "Saved") setTimeout(() => byId("saving").textContent === text && saving(""), 2500);
+  if (text === "Saved") setTimeout(unsay, 2500, text);
+}
+
+function unsay(text) {
+  if (byId("saving").textContent === text) saving("");
 }
 
 function say(text) {

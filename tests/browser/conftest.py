@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, Request, sync_pla
 
 from app.settings import Settings
 from tests.browser import chromium
-from tests.browser.serving import served
+from tests.browser.serving import Server
 
 STEP_MS = 80
 LEAD_IN_MS = 100
@@ -23,10 +23,14 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Site:
-    """A running study: its address and what it has stored."""
+    """A running study: its server and what it has stored."""
 
-    url: str
+    server: Server
     database: Path
+
+    @property
+    def url(self) -> str:
+        return self.server.url
 
     def rows(self, query: str) -> list[Row]:
         """What is stored, read past the server."""
@@ -83,8 +87,10 @@ def settings(tmp_path: Path) -> Settings:
 
 @pytest.fixture
 def site(settings: Settings) -> Iterator[Site]:
-    with served(settings) as url:
-        yield Site(url, settings.database_file)
+    server = Server(settings)
+    server.start()
+    yield Site(server, settings.database_file)
+    server.stop()
 
 
 @pytest.fixture(scope="session")

@@ -12,20 +12,47 @@ from app.main import create_app
 from app.settings import Settings
 
 
+class Server:
+    """A study's server; however often it is stopped and started, its port and database stay."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._port = free_port()
+        self.url = f"http://127.0.0.1:{self._port}"
+
+    def start(self) -> None:
+        """Serve; returns when requests are answered."""
+        config = uvicorn.Config(
+            create_app(self._settings), port=self._port, log_level="error", ws="none"
+        )
+        self._server = uvicorn.Server(config)
+        self._thread = threading.Thread(target=self._server.run)
+        self._thread.start()
+        while not self._server.started:
+            if not self._thread.is_alive():
+                raise RuntimeError("the server did not start")
+            time.sleep(0.01)
+
+    def stop(self) -> None:
+        """Close the database and the port; one that stands still already stays so."""
+        self._server.should_exit = True
+        self._thread.join()
+
+
 @contextmanager
 def served(settings: Settings) -> Iterator[str]:
     """A study on a free port of this machine; its address."""
+    server = Server(settings)
+    server.start()
+    try:
+        yield server.url
+    finally:
+        server.stop()
+
+
+def free_port() -> int:
+    """A port that nobody listens on."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    config = uvicorn.Config(create_app(settings), port=port, log_level="error", ws="none")
-    server = uvicorn.Server(config)
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    while not server.started:
-        if not thread.is_alive():
-            raise RuntimeError("the server did not start")
-        time.sleep(0.01)
-    yield f"http://127.0.0.1:{port}"
-    server.should_exit = True
-    thread.join()
+        port: int = free.getsockname()[1]
+    return port
