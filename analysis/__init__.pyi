@@ -17,6 +17,7 @@ from .errors import TableError as TableError
 from .measures import correct as correct
 from .measures import prediction_time_s as prediction_time_s
 from .measures import score as score
+from .measures import too_fast as too_fast
 from .publish import Results as Results
 from .publish import analyse_path as analyse_path
 from .reader import Dataset as Dataset

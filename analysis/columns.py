@@ -27,7 +27,8 @@ class Column:
 
     `low` and `high` are inclusive, `above` is an exclusive lower bound, `choices` lists all
     values of a text column, `letter` asks for one of A-Z. `nullable` columns may be empty; an
-    empty text is a missing value, in every file format.
+    empty text is a missing value, in every file format. `later` columns came after the first
+    exports were made: a file without them is as good, and is read as if they were empty.
     """
 
     name: str
@@ -40,6 +41,7 @@ class Column:
     choices: tuple[str, ...] = ()
     letter: bool = False
     nullable: bool = False
+    later: bool = False
 
     @property
     def dtype(self) -> DataType:
@@ -92,6 +94,11 @@ class Table:
     def names(self) -> tuple[str, ...]:
         """Names of the columns, in the order of the file."""
         return tuple(column.name for column in self.columns)
+
+    @property
+    def always(self) -> tuple[str, ...]:
+        """Names of the columns that every export has, whichever version made it."""
+        return tuple(column.name for column in self.columns if not column.later)
 
     @property
     def schema(self) -> dict[str, DataType]:

@@ -6,6 +6,7 @@ of waiting measured by the page's monotonic clock.
 """
 
 from .columns import Column, Kind, Table
+from .quality_columns import OF_PARTICIPANTS, OF_TRIALS
 
 TREATMENT = "polmdp"
 REFERENCE = "optimal"
@@ -14,12 +15,13 @@ CONDITIONS = (TREATMENT, REFERENCE)
 LABELS = {TREATMENT: "PoLMDP", REFERENCE: "optimal"}
 """How reports and figures write the conditions."""
 
+COMPLETED = "completed"
 STATUSES = (
     "about_you",
     "instructions",
     "practice",
     "trials",
-    "completed",
+    COMPLETED,
     "screened_out",
     "failed",
     "withdrawn",
@@ -128,6 +130,7 @@ TRIALS = Table(
             "reduced_motion", BOOLEAN, "Whether the robot jumped step by step instead of gliding."
         ),
         Column("frames_dropped", INTEGER, "Frames the browser failed to draw in time.", low=0),
+        *OF_TRIALS,
         _SIMULATED,
         _PREVIEW,
         _STUDY_HASH,
@@ -174,6 +177,7 @@ PARTICIPANTS = Table(
         Column("control_tries", INTEGER, "Answers given to the control question.", low=0),
         Column("trials_answered", INTEGER, "Trials answered so far.", low=0),
         Column("score", NUMBER, "Sum of the trials' scores.", "points", low=0, nullable=True),
+        *OF_PARTICIPANTS,
         Column("user_agent", TEXT, "What the browser says it is.", nullable=True),
         Column("viewport_width", INTEGER, "Width of the page's area.", "px", low=0, nullable=True),
         Column(

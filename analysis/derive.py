@@ -29,6 +29,11 @@ def scores(correct: pl.Series, stop_time_s: pl.Series, length_s: pl.Series) -> p
     return _row_by_row(measures.score, pl.Float64(), correct, possible, length_s)
 
 
+def too_fast_stops(stop_time_s: pl.Series, first_decision_s: pl.Series) -> pl.Series:
+    """Return whether each stop was too fast; null where a time is missing."""
+    return _row_by_row(measures.too_fast, pl.Boolean(), stop_time_s, first_decision_s)
+
+
 def _possible(stop_time_s: pl.Series, length_s: pl.Series) -> pl.Series:
     """Return the stop times, null where they break 0 <= stop <= length or there is no length.
 

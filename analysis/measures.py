@@ -29,3 +29,11 @@ def score(correct: bool, stop_time_s: float, length_s: float) -> float:
     if not correct:
         return 0.0
     return min(FULL_SCORE, FULL_SCORE * (length_s - stop_time_s) / (2 * length_s / 3))
+
+
+def too_fast(stop_time_s: float, first_decision_s: float) -> bool:
+    """Tell whether Stop came before the first decision of the robot was there to be seen whole.
+
+    `first_decision_s` is the motion, s, until the robot has completed its first step by choice.
+    """
+    return stop_time_s < first_decision_s

@@ -1,9 +1,10 @@
 """From an export folder, or one file of trials, to checked data.
 
-Two layouts are read. A file with all columns of `contract.TRIALS` is an export of Goalguess
-and is held to the whole contract. Any other file is a table of trials from elsewhere: it needs
-the columns of `NEEDED` (with `correct`, or `guess` and `goal`), may use the names of `ALIASES`,
-and may have missing answers, which are counted and left out of the estimates that need them.
+Two layouts are read. A file with all columns of `contract.TRIALS` (an older one lacks those that
+came later) is an export of Goalguess and is held to the whole contract. Any other file is a table
+of trials from elsewhere: it needs the columns of `NEEDED` (with `correct`, or `guess` and `goal`),
+may use the names of `ALIASES`, and may have missing answers, which are counted and left out of the
+estimates that need them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import polars as pl
 from .contract import CONDITIONS, PARTICIPANTS, TRIALS
 from .derive import correct_guesses, prediction_times_s
 from .errors import AnalysisError, EmptyArmError, TableError
+from .participant_rules import participant_problems
 from .scanning import FORMATS, is_empty_jsonl, scan, typed
 from .tables import read_rows
 from .trial_rules import membership_problems, trial_problems
@@ -95,6 +97,7 @@ def read_dataset(path: Path, *, with_simulated: bool = False) -> Dataset:
     participants = None
     if participants_path is not None:
         everyone = read_rows(PARTICIPANTS, participants_path)
+        raise_first(participants_path.name, participant_problems(everyone))
         sources.append(_source(participants_path, everyone))
         participants = everyone if with_simulated else _only_real(everyone)
         raise_first(trials_path.name, membership_problems(rows, everyone, participants_path.name))
@@ -143,7 +146,7 @@ def _read_trials(path: Path) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...]]
     columns = [column for column in TRIALS.columns if column.name in present]
     trials, problems = typed(raw, columns, path)
     unread = [problem.column for problem in problems]
-    optional = [*unread, *(() if present >= set(TRIALS.names) else ANSWERS)]
+    optional = [*unread, *(() if present >= set(TRIALS.always) else ANSWERS)]
     problems += column_problems(trials, TRIALS, optional) + trial_problems(trials)
     raise_first(path.name, problems, {meant: name for name, meant in renamed})
     return _with_measures(trials), renamed

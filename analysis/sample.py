@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from .contract import CONDITIONS
+from .contract import COMPLETED, CONDITIONS
 from .reader import Dataset
-
-COMPLETED = "completed"
 
 
 @dataclass(frozen=True)

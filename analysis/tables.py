@@ -61,6 +61,7 @@ def frame_of(table: Table, rows: Iterable[Mapping[str, Any]]) -> pl.DataFrame:
 def read_table(table: Table, path: Path) -> pl.DataFrame:
     """Read one file of the export, hold it to its contract and return it with `table.schema`.
 
+    Columns that came later than the version that made the file are empty.
     TableError names file, row and column of the first problem and how many more there are.
     """
     frame = read_rows(table, path)
@@ -69,16 +70,18 @@ def read_table(table: Table, path: Path) -> pl.DataFrame:
 
 def read_rows(table: Table, path: Path) -> pl.DataFrame:
     """Do as `read_table` and keep the column `ROW`, for checks against other tables."""
+    empty = pl.DataFrame(schema={ROW: pl.Int64(), **table.schema})
     if is_empty_jsonl(path):
-        return pl.DataFrame(schema={ROW: pl.Int64(), **table.schema})
+        return empty
     raw, names = scan(path)
-    if missing := [name for name in table.names if name not in names]:
+    if missing := [name for name in table.always if name not in names]:
         raise TableError(path.name, f"columns {', '.join(missing)}", ", ".join(names), row=1)
-    frame, problems = typed(raw, table.columns, path)
+    present = [column for column in table.columns if column.name in names]
+    frame, problems = typed(raw, present, path)
     # a cell that could not be read is not missing as well
     unread = [problem.column for problem in problems]
     raise_first(path.name, problems + column_problems(frame, table, unread))
-    return frame
+    return pl.concat([empty, frame], how="diagonal")
 
 
 def _series(table: Table, column: Column, values: list[Any]) -> pl.Series:

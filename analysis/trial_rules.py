@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import polars as pl
 
-from .derive import correct_guesses, prediction_times_s, scores
+from .derive import correct_guesses, prediction_times_s, scores, too_fast_stops
 from .validation import Problem, broken
 
 TIME_TOLERANCE_S = 0.001
@@ -20,33 +22,8 @@ def trial_problems(trials: pl.DataFrame) -> list[Problem]:
     A rule is skipped where a column it needs is not in the frame, and for rows where a cell it
     needs is missing.
     """
-    found = _two_conditions(trials)
     has = set(trials.columns)
-    if {"guess", "goal", "correct"} <= has:
-        found += _contradicted_guess(trials)
-    if {"stop_time_s", "length_s"} <= has:
-        found += broken(
-            trials,
-            pl.col("stop_time_s") > pl.col("length_s"),
-            "stop_after_end",
-            "stop_time_s",
-            "a stop no later than length_s",
-            "stop_time_s",
-            "length_s",
-        )
-    if {"stop_time_s", "length_s", "reached_end"} <= has:
-        found += broken(
-            trials,
-            pl.col("reached_end") & (pl.col("length_s") - pl.col("stop_time_s") > TIME_TOLERANCE_S),
-            "end_before_length",
-            "reached_end",
-            "stop_time_s equal to length_s where the end was reached",
-            "stop_time_s",
-            "length_s",
-        )
-    if {"stop_time_s", "length_s", "correct"} <= has:
-        found += _contradicted_measures(trials)
-    return found
+    return [problem for needs, rule in _RULES if needs <= has for problem in rule(trials)]
 
 
 def membership_problems(
@@ -94,6 +71,42 @@ def _two_conditions(trials: pl.DataFrame) -> list[Problem]:
     )
 
 
+def _stop_after_end(trials: pl.DataFrame) -> list[Problem]:
+    return broken(
+        trials,
+        pl.col("stop_time_s") > pl.col("length_s"),
+        "stop_after_end",
+        "stop_time_s",
+        "a stop no later than length_s",
+        "stop_time_s",
+        "length_s",
+    )
+
+
+def _end_before_length(trials: pl.DataFrame) -> list[Problem]:
+    return broken(
+        trials,
+        pl.col("reached_end") & (pl.col("length_s") - pl.col("stop_time_s") > TIME_TOLERANCE_S),
+        "end_before_length",
+        "reached_end",
+        "stop_time_s equal to length_s where the end was reached",
+        "stop_time_s",
+        "length_s",
+    )
+
+
+def _decision_after_end(trials: pl.DataFrame) -> list[Problem]:
+    return broken(
+        trials,
+        pl.col("first_decision_s") > pl.col("length_s"),
+        "decision_after_end",
+        "first_decision_s",
+        "a decision no later than length_s",
+        "first_decision_s",
+        "length_s",
+    )
+
+
 def _contradicted_guess(trials: pl.DataFrame) -> list[Problem]:
     derived = correct_guesses(trials["guess"], trials["goal"])
     return broken(
@@ -126,3 +139,29 @@ def _contradicted_measures(trials: pl.DataFrame) -> list[Problem]:
                 "derived",
             )
     return found
+
+
+def _contradicted_haste(trials: pl.DataFrame) -> list[Problem]:
+    derived = too_fast_stops(trials["stop_time_s"], trials["first_decision_s"])
+    return broken(
+        trials.with_columns(derived.alias("derived")),
+        pl.col("too_fast") != pl.col("derived"),
+        "too_fast_contradicts_definition",
+        "too_fast",
+        "true if and only if stop_time_s is less than first_decision_s",
+        "too_fast",
+        "stop_time_s",
+        "first_decision_s",
+    )
+
+
+_RULES: tuple[tuple[set[str], Callable[[pl.DataFrame], list[Problem]]], ...] = (
+    ({"participant", "condition"}, _two_conditions),
+    ({"guess", "goal", "correct"}, _contradicted_guess),
+    ({"stop_time_s", "length_s"}, _stop_after_end),
+    ({"stop_time_s", "length_s", "reached_end"}, _end_before_length),
+    ({"stop_time_s", "length_s", "correct"}, _contradicted_measures),
+    ({"first_decision_s", "length_s"}, _decision_after_end),
+    ({"stop_time_s", "first_decision_s", "too_fast"}, _contradicted_haste),
+)
+"""Each rule with the columns it needs."""

@@ -1,6 +1,7 @@
 """The export: raw rows and what is derived of them, as the tables of analysis.contract."""
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,14 +9,26 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from analysis import EVENTS, PARTICIPANTS, TRIALS, code_book, prediction_time_s, write_table
+from analysis import (
+    EVENTS,
+    PARTICIPANTS,
+    TRIALS,
+    code_book,
+    prediction_time_s,
+    too_fast,
+    write_table,
+)
 from app import books
 from app.answering import score_trial
 from app.database import Database
+from app.quality import alike, first_decision_s, never_moved_pointer, times_s
 from app.repository import Record
+from app.steps import ON_THE_WAY, Happening, Step
 from app.study import PREVIEW, SIMULATED, Study
 
 Row = dict[str, Any]
+
+_HAPPENINGS = frozenset(map(str, Happening))
 
 
 @dataclass(frozen=True)
@@ -35,10 +48,11 @@ def export(database: Database, study: Study, folder: Path, simulated: bool) -> E
 
     def gather(connection: Connection) -> tuple[dict[str, list[Row]], Row]:
         trials = [_trial(study, record) for record in books.all_trials(connection)]
+        events = [_event(record) for record in books.all_events(connection)]
         tables = {
             TRIALS.name: trials,
-            PARTICIPANTS.name: list(_participants(connection, trials)),
-            EVENTS.name: [_event(record) for record in books.all_events(connection)],
+            PARTICIPANTS.name: list(_participants(connection, trials, events)),
+            EVENTS.name: events,
         }
         about = {"counts": books.all_tallies(connection), "studies": books.all_studies(connection)}
         return tables, about
@@ -63,6 +77,9 @@ def export(database: Database, study: Study, folder: Path, simulated: bool) -> E
 
 def _trial(study: Study, record: Record) -> Row:
     derived = score_trial(study, record)
+    decision_s = first_decision_s(
+        study.pool.scenes[derived.stimulus.maze], derived.stimulus, record.step_ms
+    )
     return {
         "participant": record.pseudonym,
         "condition": record.condition,
@@ -93,16 +110,17 @@ def _trial(study: Study, record: Record) -> Row:
         "focus_losses": record.focus_losses,
         "reduced_motion": record.reduced_motion,
         "frames_dropped": record.frames_dropped,
+        "pointer_moved": record.pointer_moved,
+        "first_decision_s": decision_s,
+        "too_fast": too_fast(derived.stop_time_s, decision_s),
         **_marks(record),
     }
 
 
-def _participants(connection: Connection, trials: list[Row]) -> Iterator[Row]:
-    scores: dict[str, list[float]] = {}
-    for trial in trials:
-        scores.setdefault(trial["participant"], []).append(trial["score"])
+def _participants(connection: Connection, trials: list[Row], events: list[Row]) -> Iterator[Row]:
+    trials_of, events_of = _by_participant(trials), _by_participant(events)
     for record in books.all_participants(connection):
-        theirs = scores.get(record.pseudonym, [])
+        theirs = trials_of[record.pseudonym]
         yield {
             "participant": record.pseudonym,
             "condition": record.condition,
@@ -119,7 +137,9 @@ def _participants(connection: Connection, trials: list[Row]) -> Iterator[Row]:
             "finished_at": record.finished_at,
             "control_tries": record.control_tries,
             "trials_answered": len(theirs),
-            "score": sum(theirs) if theirs else None,
+            "score": sum(trial["score"] for trial in theirs) if theirs else None,
+            **_signs(theirs),
+            **_times(record, events_of[record.pseudonym]),
             "user_agent": record.user_agent,
             "viewport_width": record.viewport_width,
             "viewport_height": record.viewport_height,
@@ -129,6 +149,40 @@ def _participants(connection: Connection, trials: list[Row]) -> Iterator[Row]:
             "consent_hash": record.consent_hash,
             **_marks(record),
         }
+
+
+def _by_participant(rows: list[Row]) -> defaultdict[str, list[Row]]:
+    found: defaultdict[str, list[Row]] = defaultdict(list)
+    for row in rows:
+        found[row["participant"]].append(row)
+    return found
+
+
+def _signs(trials: list[Row]) -> Row:
+    """Data quality over the answered trials of one participant."""
+    return {
+        "never_moved_pointer": never_moved_pointer([trial["pointer_moved"] for trial in trials]),
+        "same_guess": alike([trial["guess"] for trial in trials]),
+        "same_confidence": alike([trial["confidence"] for trial in trials]),
+        "too_fast_trials": sum(trial["too_fast"] for trial in trials),
+        "pauses": sum(trial["pauses"] for trial in trials),
+        "focus_losses": sum(trial["focus_losses"] for trial in trials),
+        "frames_dropped": sum(trial["frames_dropped"] for trial in trials),
+    }
+
+
+def _times(record: Record, events: list[Row]) -> Row:
+    """Time at each step on the way, empty where it was not finished."""
+    happened = [
+        (Happening(event["type"]), event["server_time"])
+        for event in events
+        if event["type"] in _HAPPENINGS
+    ]
+    # The log has the last answer, but not that it was the last.
+    if record.step == Step.COMPLETED:
+        happened.append((Happening.ANSWERED_ALL, record.finished_at))
+    times = times_s(record.consented_at, happened)
+    return {f"{step}_s": times.get(step) for step in ON_THE_WAY}
 
 
 def _event(record: Record) -> Row:

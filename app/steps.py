@@ -42,7 +42,7 @@ class Phase(StrEnum):
 
 ENDINGS = frozenset({Step.COMPLETED, Step.SCREENED_OUT, Step.FAILED, Step.WITHDRAWN})
 
-_ON_THE_WAY = (Step.ABOUT_YOU, Step.INSTRUCTIONS, Step.PRACTICE, Step.TRIALS)
+ON_THE_WAY = (Step.ABOUT_YOU, Step.INSTRUCTIONS, Step.PRACTICE, Step.TRIALS)
 
 _NEXT: dict[tuple[Step, Happening], Step] = {
     (Step.ABOUT_YOU, Happening.DESCRIBED): Step.INSTRUCTIONS,
@@ -50,7 +50,7 @@ _NEXT: dict[tuple[Step, Happening], Step] = {
     (Step.PRACTICE, Happening.PASSED_CONTROL): Step.TRIALS,
     (Step.PRACTICE, Happening.FAILED_CONTROL): Step.SCREENED_OUT,
     (Step.TRIALS, Happening.ANSWERED_ALL): Step.COMPLETED,
-    **{(step, Happening.BROKE): Step.FAILED for step in _ON_THE_WAY},
+    **{(step, Happening.BROKE): Step.FAILED for step in ON_THE_WAY},
     **{(step, Happening.WITHDREW): Step.WITHDRAWN for step in Step if step != Step.WITHDRAWN},
 }
 

@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-from analysis import correct, prediction_time_s, score
+from analysis import correct, prediction_time_s, score, too_fast
 
 HERE = Path(__file__).parent
 Row = dict[str, Any]
@@ -41,6 +41,8 @@ def trial_row(participant: str, index: int, condition: str, **changes: Any) -> R
         "focus_losses": 0,
         "reduced_motion": False,
         "frames_dropped": 2,
+        "pointer_moved": True,
+        "first_decision_s": 2.0,
         "simulated": False,
         "preview": False,
         "study_hash": "study",
@@ -52,6 +54,7 @@ def trial_row(participant: str, index: int, condition: str, **changes: Any) -> R
         "correct": was_correct,
         "prediction_time_s": prediction_time_s(*times, was_correct),
         "score": score(was_correct, *times),
+        "too_fast": too_fast(row["stop_time_s"], row["first_decision_s"]),
     }
     return derived | row
 
@@ -74,6 +77,17 @@ def participant_row(participant: str, condition: str | None, **changes: Any) -> 
         "control_tries": 1,
         "trials_answered": 3,
         "score": 25.5,
+        "never_moved_pointer": False,
+        "same_guess": False,
+        "same_confidence": None,
+        "too_fast_trials": 0,
+        "pauses": 1,
+        "focus_losses": 2,
+        "frames_dropped": 6,
+        "about_you_s": 62.5,
+        "instructions_s": 20.25,
+        "practice_s": 41.0,
+        "trials_s": None,
         "user_agent": 'Browser "x", 1.0',
         "viewport_width": 1280,
         "viewport_height": 720,

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis import correct, prediction_time_s, score
+from analysis import correct, prediction_time_s, score, too_fast
 
 LENGTHS = st.floats(0.1, 600)
 SHARES = st.floats(0, 1)
@@ -57,3 +57,10 @@ def test_only_the_part_seen_matters_for_the_score(length_s, part, factor):
 def test_time_of_prediction_is_never_before_the_stop_nor_after_the_end(length_s, part, right):
     stop_time_s = part * length_s
     assert stop_time_s <= prediction_time_s(stop_time_s, length_s, right) <= length_s
+
+
+@pytest.mark.parametrize(
+    ("stop_time_s", "verdict"), [(0.0, True), (2.999, True), (3.0, False), (20.0, False)]
+)
+def test_a_stop_is_too_fast_until_the_first_decision_has_been_seen_whole(stop_time_s, verdict):
+    assert too_fast(stop_time_s, 3.0) is verdict

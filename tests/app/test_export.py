@@ -2,13 +2,17 @@
 
 import json
 import sqlite3
+from datetime import UTC, datetime, timedelta
 
 import polars as pl
 import pytest
 
-from analysis import EVENTS, PARTICIPANTS, TRIALS, read_table
+from analysis import EVENTS, PARTICIPANTS, TRIALS, read_dataset, read_table
+from app import repository
 from app.export import export
 from app.tables import places, trials
+from policies import first_decision, scene_maze
+from tests import messages
 
 
 @pytest.fixture
@@ -18,6 +22,14 @@ def write(client, study, tmp_path):
         return done.rows, tmp_path / "out"
 
     return run
+
+
+@pytest.fixture
+def wait(monkeypatch):
+    """The server's clock stands still, but for the seconds that a test waits."""
+    time = [datetime(2025, 3, 1, 9, 30, tzinfo=UTC)]
+    monkeypatch.setattr(repository, "now", lambda: time[-1])
+    return lambda seconds: time.append(time[-1] + timedelta(seconds=seconds))
 
 
 def test_a_row_per_answered_trial_a_row_per_participant_and_the_log(
@@ -154,3 +166,108 @@ def test_the_number_of_pilots_left_out_is_told(browser, client, study, tmp_path)
     database = client.app.state.services.database
     assert export(database, study, tmp_path / "a", simulated=False).pilots_left_out == 1
     assert export(database, study, tmp_path / "b", simulated=True).pilots_left_out == 0
+
+
+def test_a_stop_is_too_fast_before_the_first_decision_is_complete(browser, rows, study, write):
+    browser.reach_trials()
+    decisions_ms = []
+    for index, early_ms in enumerate((0, 0.1, -100), start=1):
+        browser.play(index)
+        shown = study.pool.stimuli[rows(trials)[-1].stimulus]
+        maze = scene_maze(study.pool.scenes[shown.maze])
+        decisions_ms.append(1000 * first_decision(maze, shown.cells))
+        browser.stop(index, decisions_ms[-1] - early_ms)
+        browser.answer(index)
+    _, folder = write()
+    table = read_table(TRIALS, folder / "trials.parquet")
+    assert table["first_decision_s"].to_list() == [ms / 1000 for ms in decisions_ms]
+    assert table["too_fast"].to_list() == [False, True, False]
+
+
+def test_who_watches_to_the_end_is_never_too_fast(browser, rows, write):
+    browser.reach_trials()
+    browser.play(1)
+    browser.stop(1, rows(trials)[0].length_ms, reached_end=True)
+    browser.answer(1)
+    _, folder = write()
+    assert read_table(TRIALS, folder / "trials.parquet")["too_fast"].to_list() == [False]
+
+
+def columns(folder, *names):
+    """Those columns of the participants, a row each in the order of their arrival."""
+    return read_table(PARTICIPANTS, folder / "participants.parquet").select(names).rows()
+
+
+def test_a_participants_row_sums_up_how_they_took_part(browser, another_browser, write):
+    hasty, careful, newcomer = browser, another_browser(), another_browser()
+    hasty.reach_trials()
+    for index in (1, 2, 3):
+        hasty.play(index)
+        hasty.stop(index, 0, pauses=1, focus_losses=2, frames_dropped=20)
+        hasty.answer(index, "C", pointer_moved=False)
+    careful.reach_trials()
+    careful.finish_trial(1, "A", 9000)
+    careful.finish_trial(2, "B", 9000)
+    newcomer.consent()
+    _, folder = write()
+    assert columns(folder, "never_moved_pointer", "same_guess", "same_confidence") == [
+        (True, True, True),
+        (False, False, True),
+        (None, None, None),
+    ]
+    counts = ("too_fast_trials", "pauses", "focus_losses", "frames_dropped")
+    assert columns(folder, *counts) == [(3, 3, 6, 60), (0, 0, 0, 0), (0, 0, 0, 0)]
+
+
+def test_whether_the_pointer_moved_stays_empty_where_the_page_did_not_tell(browser, write):
+    browser.reach_trials()
+    browser.play(1)
+    browser.stop(1, 5000)
+    browser.answer(1, pointer_moved=None)
+    _, folder = write()
+    assert read_table(TRIALS, folder / "trials.csv")["pointer_moved"].to_list() == [None]
+    assert columns(folder, "never_moved_pointer") == [(None,)]
+
+
+PAGES = ("about_you_s", "instructions_s", "practice_s", "trials_s")
+
+
+def test_time_at_each_step_is_that_of_the_servers_clock(browser, wait, write):
+    browser.consent()
+    wait(60.5)
+    browser.post("/about-you", messages.ABOUT_ME)
+    wait(20)
+    browser.post("/instructions")
+    for attempt, answer in enumerate(("end", "know"), start=1):
+        wait(15)
+        browser.post("/practice", messages.control(answer, attempt))
+    for index in range(1, 11):
+        wait(31)
+        browser.finish_trial(index)
+    wait(3600)
+    _, folder = write()
+    assert columns(folder, *PAGES) == [(60.5, 20, 30, 310)]
+
+
+def test_time_at_a_step_is_empty_unless_it_was_finished(browser, another_browser, wait, write):
+    screened_out, failed, going = browser, another_browser(), another_browser()
+    for one in (screened_out, failed, going):
+        one.reach_practice()
+        wait(15)
+    for attempt in (1, 2):
+        screened_out.post("/practice", messages.control("end", attempt))
+    failed.post("/failed")
+    _, folder = write()
+    assert columns(folder, *PAGES) == [(0, 0, 45, None), (0, 0, None, None), (0, 0, None, None)]
+
+
+def test_the_analysis_finds_no_contradiction_in_what_is_exported(browser, another_browser, write):
+    for number, one in enumerate((browser, *(another_browser() for _ in range(3)))):
+        one.reach_trials()
+        for index in range(1, 4):
+            one.finish_trial(index, "ABCDEF"[index * number % 6], 700.0 * index)
+    another_browser().consent()
+    _, folder = write()
+    data = read_dataset(folder)
+    assert data.participants is not None
+    assert (len(data.trials), len(data.participants)) == (12, 5)
