@@ -19,10 +19,6 @@ WITNESS = """
         addEventListener(type, (event) => witness.presses.push(event.timeStamp), true);
     }
 """
-HIDE = """hidden => {
-    Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
-    document.dispatchEvent(new Event("visibilitychange"));
-}"""
 
 
 def stop_seen_by_witness(page: Page) -> float:
@@ -106,28 +102,6 @@ def test_an_area_can_be_chosen_in_the_maze(visit: Visit):
     expect(page.locator("input[value=D]")).to_be_checked()
 
 
-def test_a_hidden_tab_pauses_and_motion_time_does_not_run(site: Site, visit: Visit):
-    page = visit()
-    page.add_init_script(WITNESS)
-    walk.reach_trials(page)
-    walk.play(page, STEP_MS)
-    page.evaluate(HIDE, True)
-    walk.phase(page, "paused")
-    page.evaluate("new Promise(resolve => setTimeout(resolve, 600))")
-    page.evaluate(HIDE, False)
-    page.get_by_role("button", name="Continue").click()
-    walk.moved(page, 2 * STEP_MS)
-    walk.stop(page)
-    walk.answer(page, "E", 2)
-    walk.round_is(page, 2)
-    (row,) = site.trials()
-    assert row["pauses"] == 1
-    assert row["paused_ms"] > 600
-    assert row["stop_time_ms"] < stop_seen_by_witness(page) + 1
-    logged = [kind for kind in ("hidden", "visible", "continued") if site.events(kind)]
-    assert logged == ["hidden", "visible", "continued"]
-
-
 def test_a_frozen_page_pauses_where_it_froze(visit: Visit):
     page = visit()
     walk.reach_trials(page)
@@ -187,17 +161,6 @@ def test_a_script_that_acts_on_the_page_moves_no_pointer(site: Site, visit: Visi
     }""")
     walk.round_is(page, 2)
     assert [row["pointer_moved"] for row in site.trials()] == [0]
-
-
-def test_reduced_motion_is_honoured_and_stored(site: Site, visit: Visit):
-    page = visit(reduced_motion="reduce")
-    walk.reach_trials(page)
-    walk.play(page)
-    walk.stop(page)
-    walk.answer(page, "F", 6)
-    walk.round_is(page, 2)
-    (row,) = site.trials()
-    assert row["reduced_motion"] == 1
 
 
 def test_leaving_in_mid_motion_goes_on_where_it_was_never_from_the_beginning(
