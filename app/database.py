@@ -23,6 +23,8 @@ Work = Callable[[Connection], T]
 LARGEST_GROUP = 200
 BUSY_MS = 10_000
 """How long to wait for another process that is writing."""
+ASK_AGAIN_MS = 10
+"""How long SQLite waits by itself when we begin to write, before we ask it again."""
 
 
 class _Waiting(NamedTuple):
@@ -35,7 +37,8 @@ class Database:
 
     def __init__(self, url: str) -> None:
         self._write_engine = sqlite_engine(url, begin="BEGIN IMMEDIATE")
-        _log_ahead(self._write_engine)
+        # Lets readers go on while the writer writes; the file remembers it.
+        _in_turn(lambda: run_pragma(self._write_engine, "journal_mode=WAL"))
         self._read_engine = sqlite_engine(url, begin="BEGIN")
         self._reader = self._read_engine.connect()
         self._reading = Lock()
@@ -64,7 +67,7 @@ class Database:
 
     def forget_deleted(self) -> None:
         """Empty the write-ahead log, which still holds what was deleted from the database."""
-        run_pragma(self._write_engine, "wal_checkpoint(TRUNCATE)")
+        run_pragma(self._read_engine, "wal_checkpoint(TRUNCATE)")
 
     def close(self) -> None:
         """Finish the queued writes and let go of the file."""
@@ -125,6 +128,7 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
 def sqlite_engine(url: str, begin: str) -> Engine:
     """An engine whose transactions start with `begin`, durable and with foreign keys enforced."""
     engine = create_engine(url, poolclass=NullPool)
+    busy_ms = ASK_AGAIN_MS if begin == "BEGIN IMMEDIATE" else BUSY_MS
 
     @event.listens_for(engine, "connect")
     def configure(connection: Any, _record: Any) -> None:
@@ -134,30 +138,39 @@ def sqlite_engine(url: str, begin: str) -> Engine:
             "synchronous=FULL",
             "foreign_keys=ON",
             "secure_delete=ON",
-            f"busy_timeout={BUSY_MS}",
+            f"busy_timeout={busy_ms}",
         ):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")
     def begin_explicitly(connection: Connection) -> None:
-        connection.exec_driver_sql(begin)
+        _in_turn(lambda: connection.exec_driver_sql(begin))
 
     return engine
 
 
-def _log_ahead(engine: Engine) -> None:
-    """Let readers go on while the writer writes; the file remembers it."""
+def _in_turn(begin: Callable[[], object]) -> None:
+    """Begin as soon as no other process is writing, within BUSY_MS.
+
+    SQLite's own waiting asks ever less often and so starves beside a process that writes without
+    a pause; before it changes to WAL it does not wait at all.
+    """
     give_up = time.monotonic() + BUSY_MS / 1000
     while True:
         try:
-            run_pragma(engine, "journal_mode=WAL")
+            begin()
             return
-        except sqlite3.OperationalError as error:
-            # Here alone SQLite does not wait for another process that has begun to write.
-            busy = error.sqlite_errorcode == sqlite3.SQLITE_BUSY
-            if not busy or time.monotonic() > give_up:
+        except Exception as error:
+            if not _is_busy(error) or time.monotonic() > give_up:
                 raise
-            time.sleep(0.01)
+            time.sleep(0.001)
+
+
+def _is_busy(error: Exception) -> bool:
+    cause = getattr(error, "orig", error)
+    code = getattr(cause, "sqlite_errorcode", sqlite3.SQLITE_OK)
+    # The lowest byte says what happened, the next one where.
+    return code & 0xFF == sqlite3.SQLITE_BUSY
 
 
 def run_pragma(engine: Engine, pragma: str) -> None:

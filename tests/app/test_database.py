@@ -4,7 +4,7 @@ import asyncio
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import closing
-from threading import Event
+from threading import Event, Semaphore
 
 import pytest
 from sqlalchemy import event, insert, select, text
@@ -183,6 +183,18 @@ def test_opening_a_new_file_waits_for_another_process_that_writes_to_it(settings
         assert not wait([opening], timeout=0.2).done
         other.rollback()
         opening.result().close()
+
+
+def test_who_waits_for_another_process_asks_often_enough_to_find_it_idle(bare, settings):
+    asked = Semaphore(0)
+    event.listen(bare._write_engine, "before_cursor_execute", lambda *_: asked.release())
+    with closing(sqlite3.connect(settings.database_file)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        waiting = bare.submit(add("one"))
+        assert all(asked.acquire(timeout=5) for _ in range(10))
+        assert not waiting.done()
+        other.rollback()
+        waiting.result()
 
 
 def test_a_write_that_was_given_up_harms_nobody_else(bare):
