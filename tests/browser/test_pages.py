@@ -10,9 +10,8 @@ from playwright.sync_api import Page, Response
 
 from tests.browser import walk
 from tests.browser.conftest import DESKTOP, PHONE, Guard, Visit
-from tests.browser.tour import tour
+from tests.browser.tour import EXPECTED, tour
 
-EXPECTED = ("404", "409", "422")  # the error page, the moved page, the form sent empty
 SECRETS = r"(?i)\b(polmdp|optimal|legib\w*|conditions?|goals?|scenarios?|stimul\w*|arm|beta)\b"
 
 SMALL_CONTROLS = """() => [...document.querySelectorAll("a, button, input, select, summary")]

@@ -4,6 +4,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser import walk
 from tests.browser.conftest import DESKTOP, LEAD_IN_MS, PHONE, STEP_MS, Guard, Site, Visit
+from tests.browser.focus import tab_to
 
 LETTERS = "ABCDEFABCD"
 DEGREES = (1, 2, 3, 4, 5, 6, 7, 1, 4, 7)
@@ -89,11 +90,11 @@ def test_by_mouse_with_double_clicks_reloads_and_the_back_button(
 def test_by_keyboard_alone_on_a_phone_with_reloads_and_the_back_key(site: Site, visit: Visit):
     page = visit(viewport=PHONE)
     page.goto("/")
-    to(page, "I agree and take part")
+    tab_to(page, "I agree and take part")
     page.keyboard.press("Enter")
 
     page.wait_for_url("**/about-you")
-    to(page, "How old are you?")
+    tab_to(page, "How old are you?")
     page.keyboard.type("44")
     page.keyboard.press("Tab")
     for number in range(5):
@@ -107,7 +108,7 @@ def test_by_keyboard_alone_on_a_phone_with_reloads_and_the_back_key(site: Site, 
     page.keyboard.press("Tab")
     page.keyboard.press("Enter")
     page.wait_for_url("**/instructions")
-    to(page, "Try it once")
+    tab_to(page, "Try it once")
     page.keyboard.press("Enter")
 
     page.wait_for_url("**/practice")
@@ -172,17 +173,6 @@ def practise_and_pass_at_the_second_try(page: Page) -> None:
     expect(page.get_by_role("heading", level=1)).to_have_text("Not quite")
     page.check("[name=answer][value=know]")
     page.get_by_role("button", name="Answer").click()
-
-
-def to(page: Page, name: str) -> None:
-    """Tab until something of that name has the focus."""
-    for _ in range(30):
-        page.keyboard.press("Tab")
-        if name in page.evaluate(
-            "(document.activeElement.labels?.[0] ?? document.activeElement).textContent"
-        ):
-            return
-    raise AssertionError(f"Tab never reaches {name!r}")
 
 
 def choose_by_keys(page: Page, index: int, letter: str, degree: int) -> None:

@@ -7,6 +7,8 @@ from playwright.sync_api import Page
 from tests import messages
 from tests.browser import walk
 
+EXPECTED = ("404", "409", "422")
+"""What browsers complain about on the way: the error page, the moved page, the form sent empty."""
 LINK = "/?PROLIFIC_PID={}&STUDY_ID=s1&SESSION_ID=t1"
 
 
@@ -16,6 +18,8 @@ def tour(page: Page) -> Iterator[str]:
     yield "no consent"
     page.goto("/nowhere")
     yield "error"
+    page.goto("/?preview=1")
+    yield "consent, as a preview"
     page.goto(LINK.format("5f1e0c2a9b3d4e6f7a8b9c01"))
     yield "consent"
     page.click("button[value=yes]")
@@ -36,7 +40,8 @@ def _practice_and_rounds(page: Page) -> Iterator[str]:
     walk.ready(page)
     yield "practice"
     page.click("#play")
-    walk.phase(page, "stopped")
+    walk.phase(page, "moving")
+    walk.stop(page)
     yield "practice, asking"
     walk.answer(page, "A", 3)
     page.locator("#control").wait_for()
@@ -80,13 +85,7 @@ def _endings(page: Page) -> Iterator[str]:
     trial = walk.trial(page)
     body = messages.answered("C", trial["stop_time_ms"])
     walk.send(page, "/api/trials/1/answered", body)
-    for index in range(2, 11):
-        ticket = walk.trial(page)["ticket"]
-        stop_time_ms = 150.0 * index
-        walk.send(page, f"/api/trials/{index}/played", messages.played(ticket))
-        walk.send(page, f"/api/trials/{index}/stopped", messages.stopped(stop_time_ms))
-        body = messages.answered("ABCDEF"[index % 6], stop_time_ms)
-        walk.send(page, f"/api/trials/{index}/answered", body)
+    walk.send_rounds(page, range(2, 11))
     page.goto("/end")
     yield "completed"
     walk.post(page, "/withdraw", {})

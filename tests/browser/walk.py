@@ -25,6 +25,22 @@ def reach_trials(page: Page, link: str = "/") -> None:
     ready(page)
 
 
+def practise(page: Page) -> None:
+    """Play the practice up to the control question."""
+    page.goto("/practice")
+    ready(page)
+    page.click("#play")
+    phase(page, "moving")
+    stop(page)
+    answer(page, "B", 4)
+
+
+def answer_control(page: Page, value: str, clicks: int = 1) -> None:
+    """Answer the control question by its form."""
+    page.locator(f"input[name=answer][value={value}]").check()
+    page.get_by_role("button", name="Answer").click(click_count=clicks)
+
+
 def post(page: Page, path: str, form: dict[str, str]) -> None:
     """Send a form as a page of ours would, without waiting for what it shows."""
     reply = page.request.post(path, form=dict(form), headers={"origin": page.evaluate("origin")})
@@ -35,6 +51,16 @@ def send(page: Page, path: str, body: messages.Body) -> None:
     """Send a message as the trial page would."""
     reply = page.request.post(path, data=body, headers={"origin": page.evaluate("origin")})
     assert reply.ok, f"{path}: {reply.text()}"
+
+
+def send_rounds(page: Page, indices: range) -> None:
+    """Play rounds by plain messages, as the trial page would send them."""
+    for index in indices:
+        ticket, stop_time_ms = trial(page)["ticket"], 150.0 * index
+        send(page, f"/api/trials/{index}/played", messages.played(ticket))
+        send(page, f"/api/trials/{index}/stopped", messages.stopped(stop_time_ms))
+        guess = "ABCDEF"[index % 6]
+        send(page, f"/api/trials/{index}/answered", messages.answered(guess, stop_time_ms))
 
 
 def trial(page: Page) -> dict[str, Any]:
