@@ -3,7 +3,7 @@
 from playwright.sync_api import Page, expect
 
 from tests.browser import walk
-from tests.browser.conftest import STEP_MS, Site, Visit
+from tests.browser.conftest import PHONE, STEP_MS, Site, Visit
 
 # Notes the time stamps of the first frame in motion and of every press, beside the study's code.
 WITNESS = """
@@ -119,11 +119,16 @@ def test_a_frozen_page_pauses_where_it_froze(visit: Visit):
     assert STEP_MS <= reached < 1500
 
 
+def answer_by_keys(page: Page) -> None:
+    for key in ("c", "5", "Enter"):
+        page.keyboard.press(key)
+
+
 def test_the_pointer_counts_as_moved_from_its_first_move_in_the_round_on(site: Site, visit: Visit):
     page = visit()
     walk.reach_trials(page)
-    for moves in (False, True, False):  # in the last round it lies still where it was left
-        if moves:
+    for index in (1, 2, 3):
+        if index == 2:  # in the third round it lies still where it was left
             page.mouse.move(100, 100)
             page.mouse.move(200, 200)
         page.keyboard.press("Space")
@@ -134,16 +139,26 @@ def test_the_pointer_counts_as_moved_from_its_first_move_in_the_round_on(site: S
         walk.moved(page, 2 * STEP_MS)
         page.keyboard.press("Space")
         walk.phase(page, "stopped")
-        for key in ("c", "5", "Enter"):
-            page.keyboard.press(key)
-        walk.ready(page)
+        answer_by_keys(page)
+        walk.round_is(page, index + 1)
     assert [row["pointer_moved"] for row in site.trials()] == [0, 1, 0]
+
+
+def test_a_touch_counts_as_a_move(site: Site, visit: Visit):
+    page = visit(viewport=PHONE, has_touch=True)
+    walk.reach_trials(page)
+    page.tap("#play")
+    walk.moved(page, STEP_MS)
+    page.tap("#play")
+    walk.phase(page, "stopped")
+    answer_by_keys(page)
+    walk.round_is(page, 2)
+    assert [row["pointer_moved"] for row in site.trials()] == [1]
 
 
 def test_a_script_that_acts_on_the_page_moves_no_pointer(site: Site, visit: Visit):
     page = visit()
     walk.reach_trials(page)
-    walk.ready(page)
     page.evaluate("""() => {
         const play = document.querySelector("#play");
         for (const type of ["pointermove", "pointerdown"]) {
