@@ -29,7 +29,7 @@ OF_TRIALS = (
 _count = partial(_added, kind=Kind.INTEGER, low=0)
 _alike = partial(_added, kind=Kind.BOOLEAN, nullable=True)
 _lasted = partial(_added, kind=Kind.NUMBER, unit="s", low=0, nullable=True)
-_BY = "by the server's clock, breaks included; empty if not finished."
+_BY_SERVER = "by the server's clock, breaks included; empty if not finished."
 
 OF_PARTICIPANTS = (
     _alike(
@@ -49,8 +49,17 @@ OF_PARTICIPANTS = (
     _count("pauses", meaning="Pauses of all answered trials."),
     _count("focus_losses", meaning="Focus losses of all answered trials."),
     _count("frames_dropped", meaning="Dropped frames of all answered trials."),
-    _lasted("about_you_s", meaning=f"From consent to the answers about oneself, {_BY}"),
-    _lasted("instructions_s", meaning=f"From there to the end of the instructions, {_BY}"),
-    _lasted("practice_s", meaning=f"From there to the control question passed or failed, {_BY}"),
-    _lasted("trials_s", meaning=f"From the control question to the last answer, {_BY}"),
+    _lasted("about_you_s", meaning=f"From consent to the answers about oneself, {_BY_SERVER}"),
+    _lasted(
+        "instructions_s",
+        meaning=f"From the answers about oneself to the end of the instructions, {_BY_SERVER}",
+    ),
+    _lasted(
+        "practice_s",
+        meaning="From the end of the instructions to the control question passed or failed, "
+        f"{_BY_SERVER}",
+    ),
+    _lasted(
+        "trials_s", meaning=f"From the control question passed to the last answer, {_BY_SERVER}"
+    ),
 )
