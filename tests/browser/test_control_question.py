@@ -17,6 +17,7 @@ def page(visit: Visit) -> Page:
     """At the control question, after the practice."""
     page = visit()
     walk.reach_practice(page)
+    page.goto("/practice")
     walk.practise(page)
     return page
 

@@ -39,6 +39,7 @@ def test_in_mid_round_the_robot_waits_where_it_was(site: Site, visit: Visit):
 def test_from_the_first_round_no_way_leads_back_into_the_practice(site: Site, visit: Visit):
     page = visit()
     walk.reach_practice(page)
+    page.goto("/practice")
     walk.practise(page)
     walk.answer_control(page, "know")
     walk.ready(page)

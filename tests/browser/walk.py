@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from playwright.sync_api import Page
+from playwright.sync_api import FloatRect, Page
 
 from tests import messages
 
@@ -27,7 +27,6 @@ def reach_trials(page: Page, link: str = "/") -> None:
 
 def practise(page: Page) -> None:
     """Play the practice up to the control question."""
-    page.goto("/practice")
     ready(page)
     page.click("#play")
     phase(page, "moving")
@@ -67,6 +66,23 @@ def trial(page: Page) -> dict[str, Any]:
     """The trial the server says the participant is at."""
     state: dict[str, Any] = page.request.get("/api/trial").json()["trial"]
     return state
+
+
+def area_cells(page: Page) -> dict[str, FloatRect]:
+    """Where the maze's areas are on the page: the cell of each letter."""
+    playback = trial(page)["playback"]
+    box = page.locator("#maze").bounding_box()
+    assert box
+    size = box["width"] / (playback["cols"] + 0.24)  # 0.12 of a cell is left around the maze
+    return {
+        area["letter"]: FloatRect(
+            x=box["x"] + size * (area["cell"][1] + 0.12),
+            y=box["y"] + size * (area["cell"][0] + 0.12),
+            width=size,
+            height=size,
+        )
+        for area in playback["areas"]
+    }
 
 
 def phase(page: Page, name: str) -> None:
