@@ -5,10 +5,11 @@ import json
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Page, Response
 
-from tests.browser import walk
+from tests.browser import colours, walk
 from tests.browser.conftest import DESKTOP, PHONE, Guard, Visit
 from tests.browser.tour import EXPECTED, tour
 
@@ -128,16 +129,13 @@ def test_colours_keep_their_contrast(visit: Visit, scheme: Any):
 
 def contrast(page: Page, front: str, back: str) -> float:
     """WCAG's contrast ratio of two colours of the style sheet."""
-    light, dark = sorted((luminance(page, front), luminance(page, back)), reverse=True)
-    return (light + 0.05) / (dark + 0.05)
+    return colours.contrast(brightness(page, front), brightness(page, back))
 
 
-def luminance(page: Page, name: str) -> float:
+def brightness(page: Page, name: str) -> float:
     value = page.evaluate(
         "name => getComputedStyle(document.documentElement).getPropertyValue(name).trim()",
         f"--{name}",
     ).lstrip("#")
     whole = "".join(digit * 2 for digit in value) if len(value) == 3 else value
-    channels = [int(whole[i : i + 2], 16) / 255 for i in (0, 2, 4)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
-    return sum(weight * c for weight, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+    return float(colours.luminance(np.array(list(bytes.fromhex(whole))) / 255))

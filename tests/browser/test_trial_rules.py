@@ -93,12 +93,8 @@ def test_an_area_can_be_chosen_in_the_maze(visit: Visit):
     walk.reach_trials(page)
     walk.play(page)
     walk.stop(page)
-    areas = page.evaluate("fetch('/api/trial').then(reply => reply.json())")["trial"]["playback"]
-    row, col = next(area["cell"] for area in areas["areas"] if area["letter"] == "D")
-    box = page.locator("#maze").bounding_box()
-    assert box
-    cell = box["width"] / (areas["cols"] + 0.24)
-    page.mouse.click(box["x"] + cell * (col + 0.62), box["y"] + cell * (row + 0.62))
+    cell = walk.area_cells(page)["D"]
+    page.mouse.click(cell["x"] + cell["width"] / 2, cell["y"] + cell["height"] / 2)
     expect(page.locator("input[value=D]")).to_be_checked()
 
 
