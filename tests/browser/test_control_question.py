@@ -10,6 +10,7 @@ from tests.browser import walk
 from tests.browser.conftest import Site, Visit
 
 NOT_QUITE = "Not quite"
+SCREENED_OUT = "Thank you, the study ends here"
 
 
 @pytest.fixture
@@ -54,12 +55,12 @@ def test_whoever_is_wrong_twice_is_screened_out_and_finds_no_third_try(site: Sit
     stale.goto("/practice")
     page.bring_to_front()
     walk.answer_control(page, "turn", clicks=2)
-    heading(page, "Thank you, this is the end for you")
+    heading(page, SCREENED_OUT)
     expect(page.locator(".code")).to_have_text("OUT1")
     page.go_back()
-    heading(page, "Thank you, this is the end for you")
+    heading(page, SCREENED_OUT)
     walk.answer_control(stale, "know")
-    heading(stale, "Thank you, this is the end for you")
+    heading(stale, SCREENED_OUT)
     (participant,) = site.rows("select * from participants")
     assert (participant["step"], participant["control_tries"]) == ("screened_out", 2)
     assert participant["finished_at"] is not None

@@ -36,6 +36,7 @@ def test_a_second_tab_is_told_and_may_take_over_where_the_first_one_was(site: Si
     second.goto("/trial")
     expect(second.get_by_role("heading", name=OPEN_ALREADY)).to_be_visible()
     expect(second.locator("#play")).to_be_hidden()
+    expect(second.locator("#round")).to_be_hidden()  # this tab does not know which one it is
     second.get_by_role("button", name="Use this tab instead").click()
     walk.phase(second, "paused")
     went_on = "You went on in another tab"

@@ -15,7 +15,7 @@ from tests.browser.serving import served
 
 EVERYBODY = ",".join(Kind)
 ALL_ROUNDS = "Thank you, all 10 rounds are in"
-SCREENED_OUT = "Thank you, this is the end for you"
+SCREENED_OUT = "Thank you, the study ends here"
 ANSWERED = """
     SELECT recruiter_id, trial_index, guess, confidence, stop_time_ms, pauses
     FROM trials JOIN recruits USING (participant_id) WHERE answered_at NOT NULL
