@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from app.assignment import Place, balanced_lists, deal_block, lists_in_cycle
 from app.errors import DealingFailed
 from policies import Scenario, load_pool
+from tests.app.dealing_bounds import arm_difference, scenario_lead, unbalanced
 
 SCENARIOS = load_pool().scenarios
-BY_ID = {scenario.id: scenario for scenario in SCENARIOS}
 
 
 def places(seed: int, count: int, size: int = 4, stream: str = "participant") -> list[Place]:
@@ -24,33 +24,19 @@ def places(seed: int, count: int, size: int = 4, stream: str = "participant") ->
 @given(st.integers(0, 2**32 - 1), st.sampled_from([2, 4, 6, 10]))
 @settings(max_examples=20, deadline=None)
 def test_conditions_never_differ_by_more_than_half_a_block(seed, size):
-    ahead = 0
-    for place in places(seed, 60, size):
-        ahead += 1 if place.condition == "polmdp" else -1
-        assert abs(ahead) <= size / 2
+    assert arm_difference(places(seed, 60, size)) <= size / 2
 
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=5, deadline=None)
 def test_within_a_condition_no_scenario_is_ahead_of_another_by_more_than_one(seed):
-    used = {condition: Counter(dict.fromkeys(BY_ID, 0)) for condition in ("polmdp", "optimal")}
-    for place in places(seed, 200):
-        used[place.condition].update(place.scenarios)
-        counts = used[place.condition].values()
-        assert max(counts) - min(counts) <= 1
+    assert scenario_lead(places(seed, 200), SCENARIOS) <= 1
 
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=5, deadline=None)
 def test_each_list_has_ten_scenarios_each_goal_1_to_3_times_and_each_maze_1_to_4_times(seed):
-    for place in places(seed, 160):
-        assert len(set(place.scenarios)) == 10
-        goals = Counter(BY_ID[one].goal for one in place.scenarios)
-        mazes = Counter(BY_ID[one].maze for one in place.scenarios)
-        assert len(goals) == 6
-        assert set(goals.values()) <= {1, 2, 3}
-        assert len(mazes) == 4
-        assert set(mazes.values()) <= {1, 2, 3, 4}
+    assert unbalanced(places(seed, 160), SCENARIOS) == []
 
 
 def test_the_same_seed_deals_the_same_places():
