@@ -17,10 +17,10 @@ def back_and_forward(page: Page, phase: str) -> None:
 def test_in_mid_round_the_robot_waits_where_it_was(site: Site, visit: Visit):
     page = visit()
     walk.reach_trials(page)
-    walk.play(page, 2 * STEP_MS)
+    walk.play(page, 4 * STEP_MS)
     back_and_forward(page, "paused")
     page.click("#play")
-    walk.moved(page, 4 * STEP_MS)
+    walk.phase(page, "moving")
     walk.stop(page)
     (stopped,) = site.trials()
     back_and_forward(page, "stopped")
