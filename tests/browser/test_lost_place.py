@@ -3,10 +3,11 @@
 import json
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import expect
 
 from app.settings import Settings
 from policies import load_pool
+from tests import messages
 from tests.browser import walk
 from tests.browser.conftest import Guard, Row, Site, Visit
 
@@ -27,13 +28,6 @@ def places(site: Site) -> list[Row]:
     )
 
 
-def play_a_round(page: Page, letter: str) -> None:
-    walk.play(page)
-    walk.stop(page)
-    walk.answer(page, letter, 5)
-    walk.round_is(page, 2)
-
-
 def test_whoever_lost_their_place_is_told_so_kindly_and_dealt_another_one(
     site: Site, visit: Visit, guard: Guard
 ):
@@ -44,7 +38,7 @@ def test_whoever_lost_their_place_is_told_so_kindly_and_dealt_another_one(
     walk.reach_trials(quick)
     (taken,) = places(site)
     assert taken == {**lost, "participant_id": 2}
-    play_a_round(quick, "C")
+    walk.play(quick)
 
     with slow.expect_navigation(url="**/trial"):
         slow.click("#play")
@@ -56,13 +50,20 @@ def test_whoever_lost_their_place_is_told_so_kindly_and_dealt_another_one(
     expect(slow.locator("#round-index")).to_have_text("1")
     dealt = places(site)
     assert dealt[0]["number"] != lost["number"]
-    play_a_round(slow, "B")
+    walk.play(slow)
+    walk.stop(slow)
+    walk.answer(slow, "B", 5)
+    walk.round_is(slow, 2)
     expect(saving).to_be_empty()
-    walk.reach_trials(visit())
+    third = visit()
+    walk.reach_practice(third)
+    walk.post(third, "/practice", messages.control("know"))
 
-    assert places(site)[:2] == dealt == [dealt[0], taken]
+    assert dealt[1] == taken
+    assert places(site)[:2] == dealt
+    assert len(places(site)) == 3
     trials = site.trials()
-    assert [(row["participant_id"], row["guess"]) for row in trials] == [(1, "B"), (2, "C")]
+    assert [(row["participant_id"], row["guess"]) for row in trials] == [(1, "B"), (2, None)]
     pool = load_pool()
     for trial, place in zip(trials, dealt, strict=True):
         first = json.loads(place["scenarios"])[0]
