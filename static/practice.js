@@ -24,11 +24,11 @@ async function begin() {
   player.load(playback);
 }
 
-function turnTo(part) {
+async function turnTo(part) {
   for (const id of ["practice", "control"]) byId(id).hidden = id !== part;
   scrollTo({ top: 0 });
   if (part === "practice") {
-    begin();
+    await begin(); // until then the button is disabled and takes no focus
     byId("play").focus({ preventScroll: true });
   } else byId("control").querySelector("h1").focus({ preventScroll: true });
 }

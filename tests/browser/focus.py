@@ -20,13 +20,16 @@ FOCUSED = f"""() => {{
     const shown = one.closest("label") ?? one; // our radio buttons are drawn by their labels
     const [box] = shown.getClientRects();
     const middle = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
-    const outlined = ({{ outlineStyle, outlineWidth }}) =>
-        outlineStyle !== "none" && parseFloat(outlineWidth) >= 2;
+    const outlined = (each) => {{
+        const {{ outlineStyle, outlineWidth }} = getComputedStyle(each);
+        const visible = each.checkVisibility({{ opacityProperty: true }});
+        return visible && outlineStyle !== "none" && parseFloat(outlineWidth) >= 2;
+    }};
     return {{
         stop: ({TAB_STOPS})().indexOf(one),
         text: (one.labels?.[0] ?? one).textContent.trim(),
         box: [box.top + scrollY, box.bottom + scrollY, box.left],
-        outlined: [one, shown].some((each) => outlined(getComputedStyle(each))),
+        outlined: outlined(one) || outlined(shown),
         uncovered: shown.contains(middle),
         outside: one === document.body,
     }};

@@ -83,14 +83,20 @@ def test_thinking_better_of_withdrawing_and_practising_again(visit: Visit):
     press(page, "Go back to the study")
     page.wait_for_url("**/practice")
     practise(page)
-    press(page, "Practise again")
-    practise(page)
+    practise_again(page)
     answer_control(page, arrows=0)
     heading(page, "Not quite")
-    press(page, "Practise again")
-    practise(page)
+    practise_again(page)
     answer_control(page, arrows=1)
     page.wait_for_url("**/trial")
+
+
+def practise_again(page: Page) -> None:
+    press(page, "Practise again")
+    walk.ready(page)
+    assert focused(page).text == "Play"
+    assert focused(page).seen
+    practise(page)
 
 
 def practise(page: Page) -> None:
@@ -103,7 +109,7 @@ def practise(page: Page) -> None:
     assert focused(page).outlined
     page.keyboard.type("a4")
     page.keyboard.press("Enter")
-    expect(page.locator("#control")).to_be_visible()
+    expect(page.locator("#control h1")).to_be_focused()
 
 
 def answer_control(page: Page, *, arrows: int) -> None:

@@ -24,7 +24,7 @@ SMALL_CONTROLS = """() => [...document.querySelectorAll("a, button, input, selec
         return box.width < 24 || box.height < 24;
     })
     .map((control) => control.outerHTML)"""
-NAMELESS = """() => [...document.querySelectorAll("a, button, input, select, canvas")]
+NAMELESS = """() => [...document.querySelectorAll("a, button, input, select, canvas, progress")]
     .filter((one) => one.type !== "hidden" && one.checkVisibility())
     .filter((one) => !(one.ariaLabel || (one.labels?.[0] ?? one).textContent.trim()))
     .map((one) => one.outerHTML)"""
