@@ -5,7 +5,9 @@ from .cli import commands as commands
 from .errors import MazeError as MazeError
 from .errors import ModelError as ModelError
 from .errors import PolicyError as PolicyError
+from .errors import ResultError as ResultError
 from .errors import StimulusError as StimulusError
+from .experiments.store import Store as Store
 from .maze import ACTION_SETS as ACTION_SETS
 from .maze import FAILURE as FAILURE
 from .maze import Action as Action

@@ -3,7 +3,8 @@
 PolicyError
 ├── MazeError        a maze text that breaks the format
 ├── ModelError       parameters or arrays that describe no valid model
-└── StimulusError    a stimulus pool that breaks its own rule
+├── StimulusError    a stimulus pool that breaks its own rule
+└── ResultError      result files that are there already, or are another run's
 """
 
 
@@ -21,3 +22,7 @@ class ModelError(PolicyError):
 
 class StimulusError(PolicyError):
     """A stimulus pool, or a file of it, that breaks the rule the manifest states."""
+
+
+class ResultError(PolicyError):
+    """Result files that are there already, or that belong to another run."""

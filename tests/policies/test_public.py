@@ -9,7 +9,11 @@ import pytest
 import policies
 
 PACKAGE = Path(policies.__file__).parent
-MODULES = sorted(path.stem for path in PACKAGE.glob("*.py") if not path.stem.startswith("__"))
+MODULES = {
+    ".".join(("policies", *path.relative_to(PACKAGE).with_suffix("").parts)): path
+    for path in sorted(PACKAGE.rglob("*.py"))
+    if not path.stem.startswith("__")
+}
 
 
 def imported(path: Path) -> set[str]:
@@ -25,15 +29,15 @@ def imported(path: Path) -> set[str]:
 
 def test_imports_run_one_way():
     graph = {
-        name: {m.split(".")[1] for m in imported(PACKAGE / f"{name}.py") if "policies." in m}
-        for name in MODULES
+        name: {module for module in imported(path) if module.startswith("policies.")}
+        for name, path in MODULES.items()
     }
     assert set(TopologicalSorter(graph).static_order()) == set(MODULES)
 
 
 @pytest.mark.parametrize("name", MODULES)
 def test_nothing_of_the_other_packages_is_imported(name):
-    tops = {module.split(".")[0] for module in imported(PACKAGE / f"{name}.py")}
+    tops = {module.split(".")[0] for module in imported(MODULES[name])}
     assert not tops & {"app", "analysis"}
 
 
