@@ -16,6 +16,7 @@ from .maze import format_maze as format_maze
 from .maze import parse_maze as parse_maze
 from .maze import random_maze as random_maze
 from .maze import read_maze as read_maze
+from .maze import read_mazes as read_mazes
 from .mdp import MDP as MDP
 from .mdp import maze_mdp as maze_mdp
 from .mdp import maze_transitions as maze_transitions

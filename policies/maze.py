@@ -107,6 +107,14 @@ def read_maze(path: Path) -> Maze:
     return parse_maze(text, source=str(path))
 
 
+def read_mazes(folder: Path) -> dict[str, Maze]:
+    """The mazes of a folder's `.txt` files, by file name without the ending, in order of names."""
+    mazes = {path.stem: read_maze(path) for path in sorted(folder.glob("*.txt"))}
+    if not mazes:
+        raise MazeError(f"{folder}: expected a folder with maze files (.txt), found none")
+    return mazes
+
+
 def parse_maze(text: str, source: str = "maze") -> Maze:
     """Parse the text format of README's "maze files"; MazeError says source:line:column."""
     lines = text.splitlines()

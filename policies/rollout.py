@@ -29,12 +29,15 @@ def draw_rollout(
     maze: Maze,
     policy: Array,
     start: int,
-    goal: int,
+    goal: int | None,
     rng: np.random.Generator,
     actions: Sequence[Action],
     max_steps: int = 1000,
 ) -> Rollout:
-    """Sample a ~ policy[x], x' ~ P until the goal is entered or `max_steps` have passed."""
+    """Sample a ~ policy[x], x' ~ P until the goal is entered or `max_steps` have passed.
+
+    Without a goal (None) the robot never stops early.
+    """
     if not 0 <= start < maze.states:
         raise ModelError(f"expected a start from 0 to {maze.states - 1}, came {start}")
     # Plain uniforms and an inverse distribution: the same draws whatever numpy's `choice` does.

@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from policies import Action, MazeError, PolicyError, format_maze, parse_maze, random_maze, read_maze
+from policies import (
+    Action,
+    MazeError,
+    PolicyError,
+    format_maze,
+    parse_maze,
+    random_maze,
+    read_maze,
+    read_mazes,
+)
 
 SMALL = """\
 +---+---+---+
@@ -156,6 +165,22 @@ class TestFiles:
         path.write_bytes(b"\xff\xfe\x00")
         with pytest.raises(MazeError, match="UTF-8"):
             read_maze(path)
+
+
+class TestFolders:
+    def test_mazes_are_named_by_their_files_and_come_in_order_of_names(self, tmp_path, draw_maze):
+        drawn = {name: draw_maze(3, 4, 2, seed=i) for i, name in enumerate("bac")}
+        for name, maze in drawn.items():
+            (tmp_path / f"{name}.txt").write_text(format_maze(maze), encoding="utf-8")
+        (tmp_path / "notes.md").write_text("no maze", encoding="utf-8")
+        read = read_mazes(tmp_path)
+        assert list(read) == ["a", "b", "c"]
+        assert all(same(read[name], drawn[name]) for name in read)
+
+    @pytest.mark.parametrize("folder", [".", "missing"])
+    def test_a_folder_without_mazes_is_refused(self, tmp_path, folder):
+        with pytest.raises(MazeError, match=r"expected a folder with maze files \(\.txt\)"):
+            read_mazes(tmp_path / folder)
 
 
 class TestMoving:

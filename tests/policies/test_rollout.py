@@ -50,6 +50,11 @@ def test_starting_at_the_goal_takes_no_step():
     assert (run.steps, run.arrived, run.states.tolist()) == (0, True, [0])
 
 
+def test_without_a_goal_it_takes_all_steps():
+    run = draw_rollout(ROW, TO_A, 3, None, np.random.default_rng(1), ACTIONS, max_steps=40)
+    assert (run.steps, run.arrived, run.states[-1]) == (40, False, 0)
+
+
 def test_gives_up_after_the_steps_allowed():
     run = draw(1, policy=np.tile(np.eye(5)[4], (4, 1)), max_steps=7)
     assert (run.steps, run.arrived) == (7, False)
