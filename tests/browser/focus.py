@@ -57,7 +57,7 @@ class Focused:
         return self.outlined and self.uncovered
 
     def reads_before(self, other: "Focused") -> bool:
-        """Above it, or beside it and to its left."""
+        """Above it, or to its left: columns are read one after the other."""
         (_, bottom, left), (other_top, _, other_left) = self.box, other.box
         return bottom <= other_top or left < other_left
 

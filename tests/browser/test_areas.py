@@ -30,10 +30,10 @@ class Tile:
 
     def __init__(self, picture: Values) -> None:
         tones = luminance(picture)
-        y, x = np.indices(tones.shape) / (len(tones) - 1) * 40 - 20
-        to_middle = np.hypot(x, y)
-        to_corner_disc = np.hypot(np.maximum(abs(x) - 12, 0), np.maximum(abs(y) - 12, 0))
-        around, plate = (to_middle > 13.5) & (to_corner_disc < 6), to_middle < 10
+        y, x = np.indices(tones.shape) / (len(tones) - 1) * 40 - 20  # tiles are drawn 40 by 40
+        from_middle = np.hypot(x, y)
+        inside = np.hypot(np.maximum(abs(x) - 12, 0), np.maximum(abs(y) - 12, 0)) < 6
+        around, plate = inside & (from_middle > 13.5), from_middle < 10
 
         pattern, self.pattern_contrast = two_tones(tones[around], 0.1)
         letter, self.letter_contrast = two_tones(tones[plate], 0)
