@@ -5,7 +5,7 @@ from sqlalchemy import Connection
 from app import answering, arrival, enrolment
 from app.arrival import Link
 from app.questions import CONTROL_RIGHT
-from app.schemas import Played
+from app.schemas import Answered, Played, Stopped
 from app.study import PARTICIPANT, Study
 from tests import messages
 
@@ -45,7 +45,25 @@ def ticket(connection: Connection, study: Study, token: str) -> str:
     return answering.standing(study, participant).ticket
 
 
-def play(connection: Connection, study: Study, token: str, ticket: str) -> None:
-    """The first frame of the first trial."""
+def play(connection: Connection, study: Study, token: str, ticket: str, index: int = 1) -> None:
+    """The first frame of a trial."""
     message = Played.model_validate(messages.played(ticket))
-    answering.played(connection, study, token, 1, message)
+    answering.played(connection, study, token, index, message)
+
+
+def stop(connection: Connection, study: Study, token: str, index: int, stop_time_ms: float) -> None:
+    message = Stopped.model_validate(messages.stopped(stop_time_ms))
+    answering.stopped(connection, study, token, index, message)
+
+
+def answer(
+    connection: Connection,
+    study: Study,
+    token: str,
+    index: int,
+    stop_time_ms: float,
+    guess: str,
+    confidence: int,
+) -> None:
+    message = Answered.model_validate(messages.answered(guess, stop_time_ms, confidence))
+    answering.answered(connection, study, token, index, message)
