@@ -9,8 +9,10 @@ import asyncio
 import multiprocessing
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass
+from itertools import repeat
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
 from typing import Any
@@ -53,10 +55,10 @@ def arrive_at_once(settings: Settings, number: int, processes: int, seed: int) -
     """Let people arrive, spread over processes that begin together."""
     context = multiprocessing.get_context("spawn")
     kinds = np.random.default_rng(seed).choice(3, number, p=SHARES)
-    shares = [(settings, kinds[i::processes].tolist()) for i in range(processes)]
+    shares = [kinds[i::processes].tolist() for i in range(processes)]
     together = context.Barrier(processes, timeout=PATIENCE_S)
-    with context.Pool(processes, _meet, (together,)) as pool:
-        times = pool.starmap(_take_part, shares, chunksize=1)
+    with ProcessPoolExecutor(processes, context, _meet, (together,)) as pool:
+        times = list(pool.map(_take_part, repeat(settings), shares))
     seconds = max(dealt for _, dealt in times) - min(began for began, _ in times)
     return Arrivals(number, int((kinds != LEAVES).sum()), seconds)
 
