@@ -70,9 +70,9 @@ def _meet(together: Barrier) -> None:
 
 def _take_part(settings: Settings, kinds: Sequence[int]) -> tuple[float, float]:
     """One process's people; returns when they began to arrive and when the last was dealt."""
-    study = load_study(settings)
-    _together.wait()
     try:
+        study = load_study(settings)
+        _together.wait()
         with closing(open_database(study)) as database:
             return asyncio.run(_Visitors(database, study).take_part(kinds))
     except BaseException:

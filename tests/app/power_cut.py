@@ -156,9 +156,7 @@ def _parts(change: Change) -> Iterator[Change]:
     if not isinstance(change, Wrote):
         yield change
         return
-    end = change.offset + len(change.data)
-    borders = range(change.offset - change.offset % SECTOR, end, SECTOR)
-    for border in borders:
-        first, last = max(border, change.offset), min(border + SECTOR, end)
-        part = change.data[first - change.offset : last - change.offset]
-        yield Wrote(change.file, first, part)
+    begin, end = change.offset, change.offset + len(change.data)
+    for border in range(begin - begin % SECTOR, end, SECTOR):
+        first, last = max(border, begin), min(border + SECTOR, end)
+        yield Wrote(change.file, first, change.data[first - begin : last - begin])

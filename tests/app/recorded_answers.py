@@ -6,7 +6,7 @@ The journal holds, in their order, what was done to each file and which answers 
 import multiprocessing
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import closing, nullcontext
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -63,7 +63,7 @@ def _record(folder: Path, visitors: int, synchronous: str | None) -> Journal:
     return journal
 
 
-def _synced(synchronous: str) -> Any:
+def _synced(synchronous: str) -> AbstractContextManager[object]:
     def engine_synced(url: str, begin: str) -> Engine:
         engine = sqlite_engine(url, begin)
         pragma = f"PRAGMA synchronous={synchronous}"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -174,7 +175,7 @@ class Dealing(RuleBasedStateMachine):
         for stream in STREAMS:
             dealt, rows = self.ever_dealt[stream], [s for s, _ in self.places if s == stream]
             assert dealt == set(range(len(dealt)))
-            assert len(rows) == -(-len(dealt) // self.block_size) * self.block_size
+            assert len(rows) == ceil(len(dealt) / self.block_size) * self.block_size
 
     @invariant()
     def conditions_differ_by_at_most_half_a_block(self) -> None:
