@@ -8,6 +8,8 @@ from .errors import PolicyError as PolicyError
 from .errors import ResultError as ResultError
 from .errors import StimulusError as StimulusError
 from .experiments.store import Store as Store
+from .irl import LearnedReward as LearnedReward
+from .irl import Learner as Learner
 from .maze import ACTION_SETS as ACTION_SETS
 from .maze import FAILURE as FAILURE
 from .maze import Action as Action
