@@ -4,15 +4,13 @@ import json
 import math
 import shutil
 import sys
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from policies.errors import PolicyError, StimulusError
+from policies.command_line import one_clear_line, write_whole
+from policies.errors import StimulusError
 
 if TYPE_CHECKING:
     from policies.polmdp import LegiblePlan
@@ -59,7 +57,7 @@ def solve(
 
     Example: goalguess solve maze.txt --goal A --json solved.json
     """
-    with _one_clear_line():
+    with one_clear_line():
         from policies.drawing import LEGEND, describe, draw_plan, in_encoding
         from policies.maze import ACTION_SETS, read_maze
         from policies.polmdp import Parameters, plan_legible
@@ -73,7 +71,7 @@ def solve(
         parameters = Parameters(beta, gamma, **given)
         plan = plan_legible(read_maze(maze), goal, parameters)
         if json_file:
-            _write({json_file: json.dumps(_as_json(plan)) + "\n"})
+            write_whole({json_file: json.dumps(_as_json(plan)) + "\n"})
         columns = shutil.get_terminal_size().columns
         maps = draw_plan(plan, ACTION_SETS[parameters.actions], columns)
         text = "\n".join([maps, LEGEND, *describe(plan)])
@@ -89,12 +87,12 @@ def build(
 
     Example: goalguess stimuli build --seed 2209
     """
-    with _one_clear_line():
+    with one_clear_line():
         from policies.pool_build import build as build_pool
 
         texts = build_pool(seed, progress=lambda doing: typer.echo(f"{doing} ...", err=True))
         to.mkdir(parents=True, exist_ok=True)
-        _write({to / name: text for name, text in texts.items()})
+        write_whole({to / name: text for name, text in texts.items()})
         typer.echo(f"wrote {' and '.join(texts)} to {to}")
 
 
@@ -108,7 +106,7 @@ def check(
 
     Example: goalguess stimuli check
     """
-    with _one_clear_line():
+    with one_clear_line():
         from policies.pool_check import check as check_pool
 
         check_pool(folder, progress=lambda proved: typer.echo(f"ok  {proved}"))
@@ -122,7 +120,7 @@ def show(
 
     Example: goalguess stimuli show s01
     """
-    with _one_clear_line():
+    with one_clear_line():
         from policies.drawing import draw_beliefs, draw_path
         from policies.pool import load_pool
         from policies.pool_build import beliefs, package_mazes
@@ -153,42 +151,14 @@ def sheet(
 
     Example: goalguess stimuli sheet --to pool.svg
     """
-    with _one_clear_line():
+    with one_clear_line():
         from policies.pool_sheet import FORMATS, draw_sheet
 
         if to.suffix not in FORMATS:
             raise StimulusError(f"expected a file ending in {', '.join(FORMATS)}; came {to}")
         typer.echo("drawing ...", err=True)
-        _write({to: draw_sheet(to.suffix)})
+        write_whole({to: draw_sheet(to.suffix)})
         typer.echo(f"wrote {to}")
-
-
-@contextmanager
-def _one_clear_line() -> Iterator[None]:
-    """Turn what the caller can mend into one line on stderr and exit code 2."""
-    try:
-        yield
-    except BrokenPipeError:  # the reader of our output has left; typer ends quietly
-        raise
-    except (PolicyError, OSError) as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(2) from error
-
-
-def _write(contents: dict[Path, str | bytes]) -> None:
-    """Write files whole or not at all: each beside its place first, then moved there."""
-    ready: list[tuple[str, Path]] = []
-    try:
-        for path, content in contents.items():
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                ready.append((file.name, path))
-                file.write(content.encode() if isinstance(content, str) else content)
-            Path(file.name).chmod(0o644)
-        for beside, path in ready:
-            Path(beside).replace(path)
-    finally:
-        for beside, _ in ready:
-            Path(beside).unlink(missing_ok=True)
 
 
 def _as_json(plan: "LegiblePlan") -> dict[str, Any]:
