@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+
+from policies import MazeError, format_maze, random_maze
+from policies.experiments.worlds import World, draw_pairs, drawn_worlds, read_worlds
+
+
+def test_the_goals_test_has_one_size_and_three_to_ten_goals():
+    worlds = drawn_worlds("goals", seed=1)
+    assert [len(world.maze.goals) for world in worlds] == [3, 4, 5, 6, 7, 8, 9, 10]
+    assert {(world.maze.rows, world.maze.cols) for world in worlds} == {(25, 25)}
+    assert worlds[0].name == "3 goals"
+
+
+def test_the_states_test_has_the_papers_sizes():
+    worlds = drawn_worlds("states", seed=1)
+    assert [world.name for world in worlds] == [
+        *("5x8", "10x10", "25x25", "40x40", "50x50", "60x60", "75x75")
+    ]
+    assert [f"{world.maze.rows}x{world.maze.cols}" for world in worlds] == [w.name for w in worlds]
+    assert [len(world.maze.goals) for world in worlds] == [3, 6, 6, 6, 6, 6, 6]
+
+
+def test_worlds_come_from_the_seed():
+    one, same, other = (
+        [format_maze(world.maze) for world in drawn_worlds("goals", seed)] for seed in (1, 1, 2)
+    )
+    assert one == same
+    assert all(a != b for a, b in zip(one, other, strict=True))
+
+
+def test_a_folder_of_mazes_is_read_smallest_first(tmp_path):
+    for name, rows, goals in (("a", 4, 2), ("b", 2, 3), ("c", 2, 2)):
+        maze = random_maze(rows, 3, goals, np.random.default_rng(0))
+        (tmp_path / f"{name}.txt").write_text(format_maze(maze), encoding="utf-8")
+    assert [world.name for world in read_worlds(tmp_path)] == ["c", "b", "a"]
+
+
+def test_a_maze_needs_a_cell_to_start_from(tmp_path):
+    (tmp_path / "cell.txt").write_text("+---+\n| A |\n+---+\n", encoding="utf-8")
+    with pytest.raises(MazeError, match=r"cell\.txt: expected a cell to start from"):
+        read_worlds(tmp_path)
+
+
+class TestPairs:
+    def test_every_start_is_as_likely_and_none_is_the_goal(self):
+        world = World("w", random_maze(2, 3, 2, np.random.default_rng(4)))
+        pairs = draw_pairs(world, 6000, seed=1)
+        assert [pair.number for pair in pairs] == list(range(6000))
+        counts = {}
+        for pair in pairs:
+            counts[pair.goal, pair.start] = counts.get((pair.goal, pair.start), 0) + 1
+        assert all(start != world.maze.goals[goal] for goal, start in counts)
+        assert len(counts) == 10
+        # Each is expected 600 times, with a standard deviation of 23.
+        assert all(500 < count < 700 for count in counts.values())
+
+    def test_a_longer_list_begins_with_a_shorter_one(self):
+        world = World("w", random_maze(5, 5, 3, np.random.default_rng(4)))
+        assert draw_pairs(world, 20, seed=1)[:5] == draw_pairs(world, 5, seed=1)
+        assert draw_pairs(world, 20, seed=2) != draw_pairs(world, 20, seed=1)
