@@ -1,4 +1,4 @@
-"""Many people who arrive at the same instant, in several processes on one database file.
+"""Many people who arrive, 500 at once, in several processes on one database file.
 
 Each process opens the study for itself, as a server does. Most people play as soon as they are
 dealt a place; the others drop out, and half of those come back when everybody has arrived and
@@ -30,6 +30,7 @@ from tests.app import people
 
 PLAYS, RETURNS, LEAVES = range(3)
 SHARES = (0.7, 0.15, 0.15)
+AT_ONCE = 500
 PLACE_S = 0.3
 PATIENCE_S = 120
 
@@ -58,7 +59,8 @@ def arrive_at_once(settings: Settings, number: int, processes: int, seed: int) -
     shares = [kinds[i::processes].tolist() for i in range(processes)]
     together = context.Barrier(processes, timeout=PATIENCE_S)
     with ProcessPoolExecutor(processes, context, _meet, (together,)) as pool:
-        times = list(pool.map(_take_part, repeat(settings), shares))
+        at_once = repeat(AT_ONCE // processes)
+        times = list(pool.map(_take_part, repeat(settings), shares, at_once))
     seconds = max(dealt for _, dealt in times) - min(began for began, _ in times)
     return Arrivals(number, int((kinds != LEAVES).sum()), seconds)
 
@@ -68,13 +70,13 @@ def _meet(together: Barrier) -> None:
     _together = together
 
 
-def _take_part(settings: Settings, kinds: Sequence[int]) -> tuple[float, float]:
+def _take_part(settings: Settings, kinds: Sequence[int], at_once: int) -> tuple[float, float]:
     """One process's people; returns when they began to arrive and when the last was dealt."""
     try:
         study = load_study(settings)
         _together.wait()
         with closing(open_database(study)) as database:
-            return asyncio.run(_Visitors(database, study).take_part(kinds))
+            return asyncio.run(_Visitors(database, study).take_part(kinds, at_once))
     except BaseException:
         # The others need not wait for this one.
         _together.abort()
@@ -86,12 +88,18 @@ class _Visitors:
     database: Database
     study: Study
 
-    async def take_part(self, kinds: Sequence[int]) -> tuple[float, float]:
+    async def take_part(self, kinds: Sequence[int], at_once: int) -> tuple[float, float]:
+        turns = asyncio.Semaphore(at_once)
+
+        async def arrive_in_turn(kind: int) -> tuple[str, float]:
+            async with turns:
+                return await self.arrive(kind)
+
         # A server under load is not a new one: it has run each statement before.
         await self.arrive(PLAYS, SIMULATED)
         _together.wait()
         began = time.monotonic()
-        arrived = await asyncio.gather(*map(self.arrive, kinds))
+        arrived = await asyncio.gather(*map(arrive_in_turn, kinds))
         _together.wait()
         await asyncio.sleep(PLACE_S)
         late = [person for person, kind in zip(arrived, kinds, strict=True) if kind == RETURNS]

@@ -1,4 +1,4 @@
-"""How places are dealt to many people who arrive at once, in several processes on one database.
+"""How places are dealt to many people, 500 at once, in several processes on one database.
 
 Example: python -m tests.benchmarks.dealing --participants 10000 --processes 4 --seed 1
 
