@@ -123,6 +123,16 @@ def test_files_and_links_of_the_readme_exist():
         assert (ROOT / target).exists(), target
 
 
+def test_tests_and_benchmarks_named_in_the_readme_exist():
+    files = set(re.findall(r"`((?:\w+/)*\w+\.py)`", README))
+    modules = {f"{name.replace('.', '/')}.py" for name in re.findall(r"python -m ([\w.]+)", README)}
+    folders = ("app", "analysis", "policies", "tests")
+    paths = [str(p.relative_to(ROOT)) for name in folders for p in (ROOT / name).rglob("*.py")]
+    assert files | modules
+    for name in files | modules:
+        assert any(path == name or path.endswith(f"/{name}") for path in paths), name
+
+
 def test_numbers_of_the_readme_are_those_of_the_pool():
     pool = json.loads((ROOT / "policies/stimuli/manifest.json").read_text(encoding="utf-8"))
     assert f"stimuli build --seed {pool['seed']}" in README

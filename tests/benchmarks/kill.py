@@ -35,6 +35,9 @@ _LOGGED = """
     WHERE type = 'answered'
 """
 
+# Some fail the control question and are screened out: that is an end too.
+_ENDED = "SELECT count(*) FROM participants WHERE step IN ('completed', 'screened_out')"
+
 
 @dataclass(frozen=True)
 class Run:
@@ -95,6 +98,7 @@ def check(database: Path, outcomes: Sequence[Outcome], before: int) -> Run:
         stored = {(who, at): facts for who, at, *facts in connection.execute(_STORED)}
         rows = Counter((who, at) for who, at, *_ in connection.execute(_STORED))
         logged = Counter(connection.execute(_LOGGED).fetchall())
+        (ended,) = connection.execute(_ENDED).fetchone()
     told = {
         (outcome.bot.recruiter_id, index): [answer.guess, answer.confidence, answer.stop_time_ms]
         for outcome in outcomes
@@ -102,8 +106,7 @@ def check(database: Path, outcomes: Sequence[Outcome], before: int) -> Run:
     }
     lost = sum(stored.get(key) != facts for key, facts in told.items())
     double = sum(n > 1 for n in rows.values()) + sum(n > 1 for n in logged.values())
-    unfinished = sum(len(outcome.answers) < ROUNDS for outcome in outcomes)
-    return Run(before, len(told), lost, double, unfinished)
+    return Run(before, len(told), lost, double, unfinished=len(outcomes) - ended)
 
 
 def main() -> None:
