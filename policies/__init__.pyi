@@ -19,6 +19,9 @@ from .maze import parse_maze as parse_maze
 from .maze import random_maze as random_maze
 from .maze import read_maze as read_maze
 from .maze import read_mazes as read_mazes
+from .maze_solver import MazeSolution as MazeSolution
+from .maze_solver import maze_rewards as maze_rewards
+from .maze_solver import solve_maze as solve_maze
 from .mdp import MDP as MDP
 from .mdp import maze_mdp as maze_mdp
 from .mdp import maze_transitions as maze_transitions

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
-from scipy.special import log_softmax, logsumexp
+from scipy.special import log_softmax
 
 from policies.certificate import Certificate, certify
 from policies.errors import ModelError
 from policies.maze import ACTION_SETS, FAILURE, Action, Maze
-from policies.mdp import MDP, Array, maze_transitions, uniform_over
-from policies.solvers import goal_values, shortest_path_policy, solve, ties
+from policies.maze_solver import Variant, least_cost, maze_rewards, solve_maze
+from policies.mdp import Array, uniform_over
+from policies.solvers import shortest_path_policy, ties
 
 Formulation = Literal["reward", "cost"]
-Variant = Literal["as_printed", "proper_posterior", "advantage"]
 ActionSet = Literal["udlr", "udlrn"]
 
 
@@ -77,25 +77,21 @@ def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) ->
     parameters = parameters or Parameters()
     n, target = maze.goal_index(goal), maze.goals[goal]
     actions = ACTION_SETS[parameters.actions]
-    q = goal_values(maze, parameters.gamma, actions)
-    log_r = log_legible_rewards(q, parameters.beta, parameters.variant)
+    q, r_leg = maze_rewards(maze, parameters.gamma, actions, parameters.beta, parameters.variant)
     optimal = shortest_path_policy(maze, target, actions)
     if parameters.formulation == "reward":
-        mdp = MDP(maze_transitions(maze, actions), np.exp(log_r[n]), parameters.gamma)
-        solution = solve(mdp)
+        solution = solve_maze(maze, r_leg[n], parameters.gamma, actions)
         v, legible = solution.v, towards(ties(solution.q), optimal)
     else:
-        others = np.delete(log_r, n, axis=0)
-        cost = np.exp(logsumexp(others, axis=0)) if len(others) else np.zeros_like(log_r[n])
+        # Summed over the other goals: 1 - r_leg would lose all digits of a small cost.
+        cost = sum((r_leg[m] for m in range(len(r_leg)) if m != n), np.zeros_like(r_leg[n]))
         v, legible = _least_cost(maze, target, cost, actions)
         legible[target] = optimal[target]
     repaired = np.zeros(maze.states, bool)
     if parameters.guard:
         legible, repaired = guard(maze, target, legible, optimal, actions)
     certificate = certify(maze, legible, target, actions)
-    return LegiblePlan(
-        maze, goal, parameters, q, np.exp(log_r), v, optimal, legible, repaired, certificate
-    )
+    return LegiblePlan(maze, goal, parameters, q, r_leg, v, optimal, legible, repaired, certificate)
 
 
 def towards(tied: NDArray[np.bool_], optimal: Array) -> Array:
@@ -154,17 +150,12 @@ def _least_cost(
 ) -> tuple[Array, Array]:
     """Least expected undiscounted cost until the goal, (S,), and the policy that attains it.
 
-    Folding a failed action's self-loop leaves a deterministic graph with edges cost / .85, so
-    a label-setting shortest path is exact. Costs below machine precision tie with standing
-    still; of tied actions only those that make headway are kept, so the goal is always reached.
+    Costs below machine precision tie with standing still; of tied actions only those that make
+    headway are kept, so the goal is always reached.
     """
     after = maze.successors[:, list(actions)]
     moves = after != np.arange(maze.states)[:, None]
-    x, a = np.nonzero(moves)
-    backwards = coo_array(
-        (cost[x, a] / (1 - FAILURE), (after[x, a], x)), (maze.states, maze.states)
-    )
-    v: Array = dijkstra(backwards.tocsr(), indices=[goal])[0]
+    v = least_cost(maze, goal, cost, actions)
     tied = ties(-(cost + FAILURE * v[:, None] + (1 - FAILURE) * v[after]))
     level = tied & moves & (v[after] <= v[:, None])
     x, a = np.nonzero(level)

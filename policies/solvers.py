@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import eye_array
-from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import spsolve
 
-from policies.errors import ModelError
+from policies.errors import MazeError, ModelError
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import MDP, Array, policy_transitions, uniform_over
 
@@ -70,10 +69,19 @@ def ties(q: Array) -> NDArray[np.bool_]:
     return tied
 
 
-def distances(maze: Maze) -> Array:
-    """Fewest moves from every state to every goal, shape (N, S)."""
-    moves: Array = dijkstra(maze.edges.tocsr(), unweighted=True, indices=list(maze.goals.values()))
-    return moves
+def distances(maze: Maze) -> NDArray[np.int32]:
+    """Fewest moves from every state to every goal, shape (N, S); MazeError where no way leads."""
+    from policies.maze_kernels import breadth_first
+
+    d = np.empty((len(maze.goals), maze.states), np.int32)
+    for n, (letter, goal) in enumerate(maze.goals.items()):
+        if breadth_first(maze.successors, goal, d[n]) < maze.states:
+            i, j = maze.cell(int(d[n].argmin()))
+            raise MazeError(
+                f"expected goal {letter} to be reachable from every cell, "
+                f"found no way from row {i}, column {j}"
+            )
+    return d
 
 
 def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
@@ -83,17 +91,43 @@ def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
     goal and kappa = .85 gamma / (1 - .15 gamma), V_n(x) = kappa^d V_n(goal); V_n(goal) is
     1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into).
     """
+    d = distances(maze)
+    return gathered(cells_after(maze, actions), d, value_tables(maze, d, gamma, actions)[1])
+
+
+def value_tables(
+    maze: Maze, d: NDArray[np.int32], gamma: float, actions: Sequence[Action]
+) -> tuple[Array, Array]:
+    """V_n and Q*_n by distance k: `v[n, k]`, and `q[n, k, m]` for moves to k - 1, k and k + 1.
+
+    What no state has (at the goal, a move that comes nearer) holds some finite value.
+    """
     if not 0 <= gamma < 1:
         raise ModelError(f"expected gamma in [0, 1), came {gamma}")
     kappa = (1 - FAILURE) * gamma / (1 - FAILURE * gamma)
-    after = maze.successors[:, list(actions)]
     goals = np.array(list(maze.goals.values()))
-    can_stay = (after[goals] == goals[:, None]).any(axis=1)
+    can_stay = (maze.successors[goals][:, list(actions)] == goals[:, None]).any(axis=1)
     loop = np.where(can_stay, gamma, gamma * (FAILURE + (1 - FAILURE) * kappa))
-    v = kappa ** distances(maze) / (1 - loop)[:, None]
-    q: Array = gamma * (FAILURE * v[:, :, None] + (1 - FAILURE) * v[:, after])
-    q[np.arange(len(goals)), goals] += 1
-    return q
+    power = kappa ** np.maximum(np.arange(-1, d.max() + 2), 0)
+    v = power / (1 - loop)[:, None]
+    onwards = np.stack([v[:, :-2], v[:, 1:-1], v[:, 2:]], axis=2)
+    q = gamma * (FAILURE * v[:, 1:-1, None] + (1 - FAILURE) * onwards)
+    q[:, 0] += 1
+    return v[:, 1:-1], q
+
+
+def gathered(after: NDArray[np.int64], d: NDArray[np.int32], table: Array) -> Array:
+    """The entries of a table by distance (N, D + 1, 3) for every goal, state and action."""
+    from policies.maze_kernels import gather
+
+    into = np.empty((len(d), *after.shape))
+    gather(after, d, table, into)
+    return into
+
+
+def cells_after(maze: Maze, actions: Sequence[Action]) -> NDArray[np.int64]:
+    """The cell each of the actions leads to when it does not fail, shape (S, A)."""
+    return np.ascontiguousarray(maze.successors[:, list(actions)])
 
 
 def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Array:
@@ -102,7 +136,10 @@ def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Ar
     Read off the distances, never off Q: far from the goal the Q values of all actions are equal
     to machine precision.
     """
-    d = dijkstra(maze.edges.tocsr(), unweighted=True, indices=[goal])[0]
-    after = maze.successors[:, list(actions)]
+    from policies.maze_kernels import breadth_first
+
+    d = np.empty(maze.states, np.int32)
+    breadth_first(maze.successors, goal, d)
+    after = cells_after(maze, actions)
     nearest = d[after].min(axis=1, keepdims=True)
     return uniform_over(d[after] == nearest)
