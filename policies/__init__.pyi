@@ -10,6 +10,10 @@ from .errors import StimulusError as StimulusError
 from .experiments.store import Store as Store
 from .irl import LearnedReward as LearnedReward
 from .irl import Learner as Learner
+from .lmdp import SEARCHES as SEARCHES
+from .lmdp import Play as Play
+from .lmdp import Search as Search
+from .lmdp import play_lmdp as play_lmdp
 from .maze import ACTION_SETS as ACTION_SETS
 from .maze import FAILURE as FAILURE
 from .maze import Action as Action
@@ -25,7 +29,12 @@ from .maze_solver import solve_maze as solve_maze
 from .mdp import MDP as MDP
 from .mdp import maze_mdp as maze_mdp
 from .mdp import maze_transitions as maze_transitions
+from .measures import Legibility as Legibility
+from .measures import measure_legibility as measure_legibility
+from .measures import steps_allowed as steps_allowed
 from .observer import OBSERVER_BETA as OBSERVER_BETA
+from .observer import action_beliefs as action_beliefs
+from .observer import belief_distance as belief_distance
 from .observer import movement_beliefs as movement_beliefs
 from .observer import steps_until_sure as steps_until_sure
 from .polmdp import LegiblePlan as LegiblePlan
