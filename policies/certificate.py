@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, eye_array
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 from policies.maze import FAILURE, Action, Maze
-from policies.mdp import Array, maze_transitions, policy_transitions
+from policies.mdp import Array
+from policies.solvers import cells_after, distances_to
 
 LARGEST_STRETCH = 4.0
 
@@ -39,31 +39,47 @@ class Certificate:
 
 
 def certify(maze: Maze, policy: Array, goal: int, actions: Sequence[Action]) -> Certificate:
-    """Certificate of arrival of a policy (S, A) that stops on entering the goal."""
-    chain = policy_transitions(maze_transitions(maze, actions), policy)
-    at_goal = np.arange(maze.states) == goal
-    lost = ~_can_enter(chain, at_goal)
-    arrives = ~_can_enter(chain, lost, never_through=at_goal)
-    steps = np.full(maze.states, np.inf)
-    steps[goal] = 0
-    on_the_way = np.flatnonzero(arrives & ~at_goal)
-    if len(on_the_way):
-        within = chain[on_the_way][:, on_the_way]
-        leave = (eye_array(len(on_the_way)) - within).tocsc()
-        steps[on_the_way] = spsolve(leave, np.ones(len(on_the_way)))
-    fewest = dijkstra(maze.edges.tocsr(), unweighted=True, indices=[goal])[0] / (1 - FAILURE)
-    stretch = np.divide(steps, fewest, out=np.ones(maze.states), where=~at_goal)
-    return Certificate(arrives, steps, stretch)
+    """Certificate of arrival of a policy (S, A) that stops on entering the goal.
 
+    One pass: each state after those its actions lead to; only where states lead to one another
+    are their expected steps a linear system.
+    """
+    from policies.certificate_kernels import components, expect_steps
 
-def _can_enter(
-    chain: csr_array, target: NDArray[np.bool_], never_through: NDArray[np.bool_] | None = None
-) -> NDArray[np.bool_]:
-    """The states from which the chain enters `target` with a probability above 0."""
-    blocked = np.zeros_like(target) if never_through is None else never_through
-    entered = target
+    after = cells_after(maze, actions)
+    order, ends = np.empty(maze.states, np.int32), np.empty(maze.states + 1, np.int32)
+    ends = ends[: components(after, policy, goal, order, ends) + 1]
+    steps = np.empty(maze.states)
+    k = 0
     while True:
-        grown = (entered | (chain @ entered > 0)) & ~blocked
-        if (grown == entered).all():
-            return entered
-        entered = grown
+        k = expect_steps(after, policy, goal, 1 - FAILURE, order, ends, k, steps)
+        if k == len(ends) - 1:
+            break
+        x = np.sort(order[ends[k] : ends[k + 1]])
+        steps[x] = _steps_round(x, after[x], policy[x], steps)
+        k += 1
+    stretch = np.ones(maze.states)
+    fewest = distances_to(maze, goal) / (1 - FAILURE)
+    np.divide(steps, fewest, out=stretch, where=np.arange(maze.states) != goal)
+    return Certificate(np.isfinite(steps), steps, stretch)
+
+
+def _steps_round(
+    x: NDArray[np.int32], after: NDArray[np.int64], policy: Array, steps: Array
+) -> Array:
+    """Expected steps from the k states `x`, in order, that lead to one another; (k, A) of each.
+
+    `steps` holds those of all they lead to besides.
+    """
+    place = np.searchsorted(x, after).clip(max=len(x) - 1)
+    taken, inside = policy > 0, x[place] == after
+    moves = taken & (after != x[:, None])
+    out = taken & ~inside
+    onwards = np.where(out, policy * np.where(out, steps[after], 0), 0).sum(axis=1)
+    if not out.any() or np.isinf(onwards).any():
+        return np.full(len(x), np.inf)
+    row, a = np.nonzero(moves & inside)
+    within = coo_array((policy[row, a], (row, place[row, a])), (len(x), len(x)))
+    moving = np.where(moves, policy, 0).sum(axis=1)
+    expected: Array = spsolve((diags_array(moving) - within).tocsc(), 1 / (1 - FAILURE) + onwards)
+    return expected

@@ -71,16 +71,20 @@ def ties(q: Array) -> NDArray[np.bool_]:
 
 def distances(maze: Maze) -> NDArray[np.int32]:
     """Fewest moves from every state to every goal, shape (N, S); MazeError where no way leads."""
+    return np.stack([distances_to(maze, goal) for goal in maze.goals.values()])
+
+
+def distances_to(maze: Maze, goal: int) -> NDArray[np.int32]:
+    """Fewest moves from every state to one, shape (S,); MazeError where no way leads."""
     from policies.maze_kernels import breadth_first
 
-    d = np.empty((len(maze.goals), maze.states), np.int32)
-    for n, (letter, goal) in enumerate(maze.goals.items()):
-        if breadth_first(maze.successors, goal, d[n]) < maze.states:
-            i, j = maze.cell(int(d[n].argmin()))
-            raise MazeError(
-                f"expected goal {letter} to be reachable from every cell, "
-                f"found no way from row {i}, column {j}"
-            )
+    d = np.empty(maze.states, np.int32)
+    if breadth_first(maze.successors, goal, d) < maze.states:
+        found = maze.cell(int(d.argmin()))
+        raise MazeError(
+            f"expected cell {maze.cell(goal)} to be reachable from every cell, "
+            f"found no way from {found} (row, column)"
+        )
     return d
 
 
@@ -136,10 +140,7 @@ def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Ar
     Read off the distances, never off Q: far from the goal the Q values of all actions are equal
     to machine precision.
     """
-    from policies.maze_kernels import breadth_first
-
-    d = np.empty(maze.states, np.int32)
-    breadth_first(maze.successors, goal, d)
+    d = distances_to(maze, goal)
     after = cells_after(maze, actions)
     nearest = d[after].min(axis=1, keepdims=True)
     return uniform_over(d[after] == nearest)

@@ -10,11 +10,13 @@ from policies import (
     certify,
     distances,
     draw_rollout,
+    maze_transitions,
     parse_maze,
     plan_legible,
     random_maze,
     shortest_path_policy,
 )
+from policies.mdp import policy_transitions
 
 ACTIONS = ACTION_SETS["udlrn"]
 ROW = parse_maze("+---+---+---+---+\n| A   .   .   . |\n+---+---+---+---+\n")
@@ -113,3 +115,36 @@ def test_what_does_not_arrive_in_simulation_is_not_said_to(seed):
     for start in range(16):
         run = draw_rollout(maze, policy, start, maze.goals["A"], rng, ACTIONS, max_steps=400)
         assert run.arrived == certificate.arrives[start]
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.3, 0.7]), st.integers(1, 4))
+def test_any_policy_has_the_steps_that_dense_linear_algebra_gives(seed, openness, choices):
+    rng = np.random.default_rng(seed)
+    maze = random_maze(5, 6, 1, rng, openness)
+    goal = maze.goals["A"]
+    chosen = np.argsort(rng.random((30, 5)), axis=1) < rng.integers(1, choices + 1, (30, 1))
+    towards = shortest_path_policy(maze, goal, ACTIONS)
+    policy = np.where(rng.random((30, 1)) < 0.5, towards, chosen / chosen.sum(axis=1)[:, None])
+    chain = policy_transitions(maze_transitions(maze, ACTIONS), policy).toarray()
+    chain[goal] = np.eye(30)[goal]
+    reached = np.linalg.matrix_power(chain + np.eye(30), 30) > 0
+    lost = ~reached[:, goal]
+    arrives = ~reached[:, lost].any(axis=1)
+    certificate = certify(maze, policy, goal, ACTIONS)
+    assert np.array_equal(certificate.arrives, arrives)
+    way = arrives & (np.arange(30) != goal)
+    leave = np.eye(way.sum()) - chain[np.ix_(way, way)]
+    steps = np.linalg.solve(leave, np.ones(way.sum()))
+    assert certificate.expected_steps[way] == pytest.approx(steps, rel=1e-9)
+
+
+def test_a_way_through_several_cycles_takes_the_sum_of_their_times():
+    cells = "   ".join(["A", *["."] * 8])
+    corridor = parse_maze(f"+{'---+' * 9}\n| {cells} |\n+{'---+' * 9}\n")
+    policy = np.tile(LEFT, (9, 1))
+    policy[[2, 6]] = (LEFT + RIGHT) / 2
+    certificate = certify(corridor, policy, 0, ACTIONS)
+    # Where left and right are as likely, one step right is to be expected, and its way back: 3 moves.
+    wanted = np.array([0, 1, 4, 5, 6, 7, 10, 11, 12])
+    assert certificate.expected_steps == pytest.approx(wanted / 0.85)
