@@ -1,4 +1,4 @@
-"""The commands of the decision science: `solve` and `stimuli`."""
+"""The commands of the decision science: `solve`, `stimuli` and the paper's simulations."""
 
 import json
 import math
@@ -11,6 +11,7 @@ import typer
 
 from policies.command_line import one_clear_line, write_whole
 from policies.errors import StimulusError
+from policies.experiments.compare_cli import compare
 
 if TYPE_CHECKING:
     from policies.polmdp import LegiblePlan
@@ -23,6 +24,7 @@ commands = typer.Typer(
 )
 stimuli = typer.Typer(no_args_is_help=True, help="Build, prove and look at the pool of stimuli.")
 commands.add_typer(stimuli, name="stimuli")
+commands.command()(compare)
 
 DATA = Path(__file__).parent / "stimuli"
 PACKAGE = "the package's own"

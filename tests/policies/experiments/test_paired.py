@@ -15,8 +15,8 @@ def test_the_interval_is_scipys():
     values, _ = drawn()
     found = mean_interval(values)
     low, high = stats.t.interval(0.95, 24, values.mean(), stats.sem(values))
-    assert (found.n, found.mean) == (25, pytest.approx(values.mean()))
-    assert (found.low, found.high) == (pytest.approx(low), pytest.approx(high))
+    assert found.n == 25
+    assert [found.mean, found.low, found.high] == pytest.approx([values.mean(), low, high])
 
 
 def test_few_values_have_no_interval():
@@ -29,7 +29,7 @@ def test_few_values_have_no_interval():
 def test_the_t_test_is_scipys():
     a, b = drawn()
     found, wanted = paired_test(a, b), stats.ttest_rel(a, b)
-    assert (found.t, found.p_t) == (pytest.approx(wanted.statistic), pytest.approx(wanted.pvalue))
+    assert [found.t, found.p_t] == pytest.approx([wanted.statistic, wanted.pvalue])
     assert found.difference.mean == pytest.approx((a - b).mean())
     assert found.d_z == pytest.approx(wanted.statistic / 5)
 
@@ -42,7 +42,9 @@ def test_ranks_by_hand():
 
 def test_the_signed_rank_test_is_scipys_two_sided_one():
     a, b = drawn(12)
-    assert paired_test(a, b).p_wilcoxon == pytest.approx(stats.wilcoxon(a, b).pvalue)
+    assert paired_test(a, b).p_wilcoxon == pytest.approx(
+        stats.wilcoxon(a, b, method="approx").pvalue
+    )
 
 
 def test_the_other_way_round_turns_the_signs():

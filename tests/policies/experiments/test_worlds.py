@@ -1,3 +1,5 @@
+from collections import Counter
+
 import numpy as np
 import pytest
 
@@ -47,9 +49,7 @@ class TestPairs:
         world = World("w", random_maze(2, 3, 2, np.random.default_rng(4)))
         pairs = draw_pairs(world, 6000, seed=1)
         assert [pair.number for pair in pairs] == list(range(6000))
-        counts = {}
-        for pair in pairs:
-            counts[pair.goal, pair.start] = counts.get((pair.goal, pair.start), 0) + 1
+        counts = Counter((pair.goal, pair.start) for pair in pairs)
         assert all(start != world.maze.goals[goal] for goal, start in counts)
         assert len(counts) == 10
         # Each is expected 600 times, with a standard deviation of 23.
