@@ -16,7 +16,7 @@ from policies.measures import steps_allowed
 from policies.observer import OBSERVER_BETA, updated
 from policies.polmdp import ActionSet
 from policies.rollout import Rollout
-from policies.solvers import distances, goal_values, shortest_path_policy
+from policies.solvers import cells_after, distances, goal_values, shortest_path_policy
 
 if TYPE_CHECKING:
     from policies.lmdp_kernels import World
@@ -120,13 +120,13 @@ class TreeSearch:
         self.costs = lmdp_kernels.Costs(get_args(StageCost).index(search.distance), search.task)
         self.tree = lmdp_kernels.empty_tree(search.simulations + 1, A, N)
         self.prior = np.full(N, 1 / N)
-        # Compiled here, before any clock of a play runs.
-        rng = np.random.default_rng()
+        # Compiled here, before the clock of a play's search runs.
+        rng = np.random.default_rng(0)
         self.run(self.goal_state, self.prior, rng, until=-np.inf)
         self._simulate(0, rng)
 
     def run(self, x: int, belief: Array, rng: np.random.Generator, until: float = np.inf) -> int:
-        """Search from a state and belief (N,); the root's costs of actions are in `tree.q[0]`.
+        """Search from a state and belief (N,); the cost of each action is in `tree.q[0]`.
 
         Ends early when perf_counter() passes `until`; returns the simulations run.
         """
@@ -160,7 +160,7 @@ class TreeSearch:
             policy = np.full(q.shape[1:], 1 / len(actions))
         upto = policy.cumsum(axis=1)
         return self.kernels.World(
-            maze.successors[:, list(actions)],
+            cells_after(maze, actions),
             np.ascontiguousarray(softmax(self.search.beta * q, axis=2).transpose(1, 2, 0)),
             upto / upto[:, -1:],
             n,
@@ -190,25 +190,25 @@ def play_lmdp(
     began = perf_counter()
     until = began + search.time_limit_s - searching.solve_time_s
     states, taken, beliefs, simulations = [start], list[int](), [searching.prior], 0
-    ended: Ending = "step limit"
-    while len(taken) < allowed:
+    while states[-1] != world.goal_state and len(taken) < allowed:
         x, belief = states[-1], beliefs[-1]
         done = searching.run(x, searching.prior if search.forgets else belief, rng, until)
         simulations += done
         if done < search.simulations:
-            ended = "time limit"
             break
         a = int(tree.q[0].argmin())
         fails = rng.random() < FAILURE
         taken.append(a)
         states.append(x if fails else int(world.after[x, a]))
         beliefs.append(updated(belief, world.likelihood[x, a]))
-        if states[-1] == world.goal_state:
-            break
-    if states[-1] == world.goal_state:
-        ended = "arrived"
-    rollout = Rollout(np.array(states), np.array(taken, int), ended == "arrived")
     search_time_s = perf_counter() - began
+    arrived = states[-1] == world.goal_state
+    gave_up: Ending = "step limit" if len(taken) == allowed else "time limit"
     return Play(
-        rollout, np.array(beliefs), ended, simulations, searching.solve_time_s, search_time_s
+        Rollout(np.array(states), np.array(taken, int), arrived),
+        np.array(beliefs),
+        "arrived" if arrived else gave_up,
+        simulations,
+        searching.solve_time_s,
+        search_time_s,
     )

@@ -119,6 +119,7 @@ class TestTimeLimit:
         assert played.simulations == pytest.approx(48 * 500, abs=2 * 500)
 
     def test_it_is_kept_by_the_real_clock(self):
+        play(25, 25, 6, 4)  # compiles what is not compiled yet
         played = play(25, 25, 6, 4, Search(simulations=10**6, time_limit_s=0.2))
         assert played.ended == "time limit"
         assert 0.2 <= played.solve_time_s + played.search_time_s < 2
