@@ -195,11 +195,10 @@ def sink(heap: Integers, key: Array, place: Integers, size: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def best_first(
-    step: Integers, c: Array, leak: float, v: Array, waiting: Integers, most: int
-) -> int:
+def best_first(step: Integers, c: Array, leak: float, v: Array, first: Integers, most: int) -> int:
     """Raise values to c[x, a] + (1 - leak) v(x), the highest x first; returns the cells taken up.
 
+    `first` are the cells to begin with, in falling order; cells that are raised wait in a heap.
     `step[a]` is what action a adds to x where no wall stands. As a rule each cell is final when it
     is taken up (Dijkstra's label setting); where the order was wrong it is taken up again, `most`
     times in all. Whoever calls checks the residual.
@@ -207,16 +206,18 @@ def best_first(
     S = len(v)
     heap, key = np.empty(S, np.int32), np.empty(S)
     place = np.full(S, -1, np.int32)
-    for size, x in enumerate(waiting):
-        rise(heap, key, place, size, x, v[x])
-    size, taken = len(waiting), 0
-    while size > 0 and taken < most:
-        x = heap[0]
-        place[x] = -1
-        size -= 1
+    size, begun, taken = 0, 0, 0
+    while (size > 0 or begun < len(first)) and taken < most:
         taken += 1
-        if size > 0:
-            sink(heap, key, place, size)
+        if size == 0 or (begun < len(first) and v[first[begun]] >= key[0]):
+            x = first[begun]
+            begun += 1
+        else:
+            x = heap[0]
+            place[x] = -1
+            size -= 1
+            if size > 0:
+                sink(heap, key, place, size)
         for a in range(MOVES):
             if c[x, a] == -math.inf:
                 continue

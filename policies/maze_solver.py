@@ -83,8 +83,9 @@ def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) ->
     best = np.empty(maze.states, np.int8)
     cells = np.empty(maze.states, np.int32)
     for _ in range(ROUNDS):
-        count = kernels.sources(after, c, leak, v, cells)
-        kernels.best_first(_steps(maze), c, leak, v, cells[:count], MOST_TAKEN * maze.states)
+        first = cells[: kernels.sources(after, c, leak, v, cells)]
+        first = first[np.argsort(-v[first])]
+        kernels.best_first(_steps(maze), c, leak, v, first, MOST_TAKEN * maze.states)
         residual, more = kernels.improve(after, r, scale, leak, v, best)
         if not more:
             break
