@@ -178,7 +178,8 @@ def play_lmdp(
 ) -> Play:
     """Plan and act step by step until the goal, the steps allowed (4 x distance / .85) or time.
 
-    The time limit covers solving and searching, not the compiling of the search on first use.
+    The time limit covers solving and searching, not the compiling of the search on first use;
+    the same seed gives the same play wherever the limit is not reached.
     ModelError for a start outside the maze, MazeError for an unknown goal.
     """
     n = maze.goal_index(goal)

@@ -130,6 +130,13 @@ class TestTheTree:
         assert (tree.visits[0] > 0).all()
         assert tree.size[0] <= 501
 
+    def test_values_an_action_from_its_first_visit_by_what_came_of_it(self):
+        for seed in range(6):
+            _, _, _, tree = searched(seed, Search(simulations=4, depth=1, actions="udlr"))
+            for a in range(4):
+                (came,) = tree.child[0, a][tree.child[0, a] != NONE]
+                assert (tree.visits[0, a], tree.q[0, a]) == (1, tree.cost[came])
+
     def test_no_history_is_longer_than_the_depth(self):
         _, start, _, tree = searched(2, Search(simulations=2000, depth=2, actions="udlr"))
         level = {0: 0}
