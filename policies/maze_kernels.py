@@ -22,7 +22,7 @@ ROUNDING = 8 * np.finfo(float).eps
 @njit(cache=True, nogil=True)
 def breadth_first(after: Integers, goal: int, d: Integers) -> int:
     """Write the fewest moves to the goal into `d`, -1 where no way leads; the cells reached."""
-    queue = np.empty(len(d), np.int32)
+    queue = np.empty(len(d) + 1, np.int32)
     d[:] = -1
     d[goal] = 0
     queue[0] = goal
@@ -32,11 +32,12 @@ def breadth_first(after: Integers, goal: int, d: Integers) -> int:
         farther = d[x] + 1
         first += 1
         for a in range(MOVES):
+            # Without a branch: whether a cell is new cannot be predicted, and guesses cost more.
             y = after[x, a]
-            if d[y] < 0:
-                d[y] = farther
-                queue[last] = y
-                last += 1
+            new = d[y] < 0
+            d[y] = farther if new else d[y]
+            queue[last] = y
+            last += new
     return last
 
 
