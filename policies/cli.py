@@ -12,6 +12,7 @@ import typer
 from policies.command_line import one_clear_line, write_whole
 from policies.errors import StimulusError
 from policies.experiments.compare_cli import compare
+from policies.experiments.teach_cli import teach
 
 if TYPE_CHECKING:
     from policies.polmdp import LegiblePlan
@@ -25,6 +26,7 @@ commands = typer.Typer(
 stimuli = typer.Typer(no_args_is_help=True, help="Build, prove and look at the pool of stimuli.")
 commands.add_typer(stimuli, name="stimuli")
 commands.command()(compare)
+commands.add_typer(teach, name="teach")
 
 DATA = Path(__file__).parent / "stimuli"
 PACKAGE = "the package's own"

@@ -37,7 +37,16 @@ def run(*arguments, **environment):
 
 def test_the_commands_of_all_three_packages_are_one_command():
     names = {words[0] for words in all_commands()}
-    assert names == {"serve", "simulate", "export", "solve", "stimuli", "analyse"}
+    assert names == {
+        "serve",
+        "simulate",
+        "export",
+        "solve",
+        "stimuli",
+        "compare",
+        "teach",
+        "analyse",
+    }
 
 
 @pytest.mark.parametrize("words", list(all_commands()), ids=" ".join)
