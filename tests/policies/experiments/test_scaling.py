@@ -77,11 +77,18 @@ def test_a_dask_cluster_of_two_finds_the_same(worlds, serial, tmp_path):
     assert untimed(store.file) == untimed(serial)
 
 
-def test_another_seed_finds_something_else(worlds, serial, tmp_path):
-    other = Comparison("states", pairs=4, simulations=30, limit_s=60, seed=6)
-    store = open_comparison(tmp_path, worlds, other)
-    compare_frameworks(worlds, other, store)
-    assert untimed(store.file) != untimed(serial)
+def test_the_seed_decides_pairs_and_plays(tmp_path):
+    # Two cells and one goal leave one pair: what differs is how often an action fails.
+    cells = [World("cells", random_maze(1, 2, 1, np.random.default_rng(0)))]
+    steps = []
+    for seed in (1, 2):
+        comparison = Comparison("states", pairs=30, simulations=1, seed=seed)
+        store = open_comparison(tmp_path / str(seed), cells, comparison)
+        compare_frameworks(cells, comparison, store)
+        steps.append(read_rows(store.file)["steps"].to_list())
+    assert steps[0] != steps[1]
+    world = drawn_worlds("states", 1)[0]
+    assert draw_pairs(world, 9, seed=1) != draw_pairs(world, 9, seed=2)
 
 
 class TestResume:

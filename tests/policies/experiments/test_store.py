@@ -1,4 +1,5 @@
 import json
+import os
 import subprocess
 import sys
 
@@ -41,6 +42,14 @@ def test_done_gives_the_keys_of_all_rows_as_text(tmp_path):
     store.append([row("5x8", 0), row("5x8", 1)])
     assert store.done(["world", "pair"]) == {("5x8", "0"), ("5x8", "1")}
     assert store.done(["world"]) == {("5x8",)}
+
+
+def test_what_is_appended_is_on_the_disk_when_it_returns(tmp_path, monkeypatch):
+    store = opened(tmp_path)
+    synced = []
+    monkeypatch.setattr("os.fsync", lambda file: synced.append(os.fstat(file).st_size))
+    store.append([row("5x8", 0), row("5x8", 1)])
+    assert synced == [store.file.stat().st_size]
 
 
 @pytest.mark.parametrize("wrong", [{"world": "5x8", "pair": 1}, {**row("5x8", 1), "more": 2}])
