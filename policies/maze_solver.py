@@ -23,17 +23,19 @@ Variant = Literal["as_printed", "proper_posterior", "advantage"]
 LARGEST_EXPONENT = 600.0
 """Up to this, exp(beta Q) keeps its full precision; beyond, posteriors stay in log space."""
 
-
-ROUNDS = 100
 MOST_TAKEN = 4
 """Cells are taken up once each as a rule; beyond so many times, exact evaluation is faster."""
+
+ROUNDS = 100
+"""Policy iteration ends after a few; rounding must not keep it going."""
 
 
 @dataclass(frozen=True, eq=False)
 class MazeSolution:
     """Optimal values `v[x]` and action values `q[x, a]` of a maze with rewards r[x, a].
 
-    `bound` is the certified largest error of `v`: the Bellman residual / (1 - kappa).
+    `bound` is the certified largest error of `v`, but for the rounding of `v` itself: the Bellman
+    residual / (1 - kappa).
     """
 
     v: Array
@@ -65,9 +67,9 @@ def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) ->
     """Optimal values of a maze with rewards `r[x, a]`, (S, A), and no end: exact, with its bound.
 
     Values spread best first from cells where the robot stays, or goes to and fro between two, as
-    Dijkstra's algorithm spreads distances. Where longer cycles pay (never yet seen with legible
-    rewards) the residual shows it: there the greedy policy is evaluated exactly, as in policy
-    iteration (Howard, 1960), and values spread again from what it is worth.
+    Dijkstra's algorithm spreads distances. Where longer cycles pay the residual shows it: there
+    the greedy policy is evaluated exactly, as in policy iteration (Howard, 1960), and values
+    spread again from what it is worth.
     """
     from policies import maze_kernels as kernels
 
@@ -107,7 +109,8 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     v = np.full(maze.states, -np.inf)
     v[goal] = 0
     kernels.best_first(_steps(maze), c, 0.0, v, np.array([goal]), maze.states)
-    return -v
+    fewest: Array = np.abs(v)
+    return fewest
 
 
 def _steps(maze: Maze) -> NDArray[np.int64]:
