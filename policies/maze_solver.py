@@ -109,8 +109,8 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     v = np.full(maze.states, -np.inf)
     v[goal] = 0
     kernels.best_first(_steps(maze), c, 0.0, v, np.array([goal]), maze.states)
-    fewest: Array = np.abs(v)
-    return fewest
+    least: Array = np.abs(v)
+    return least
 
 
 def _steps(maze: Maze) -> NDArray[np.int64]:

@@ -145,6 +145,6 @@ def test_a_way_through_several_cycles_takes_the_sum_of_their_times():
     policy = np.tile(LEFT, (9, 1))
     policy[[2, 6]] = (LEFT + RIGHT) / 2
     certificate = certify(corridor, policy, 0, ACTIONS)
-    # Where left and right are as likely, one step right is to be expected, and its way back: 3 moves.
+    # Where left and right are as likely, one step right and its way back are to be expected.
     wanted = np.array([0, 1, 4, 5, 6, 7, 10, 11, 12])
     assert certificate.expected_steps == pytest.approx(wanted / 0.85)
