@@ -145,7 +145,7 @@ def _about_failures(comparison: Comparison, tables: Tables) -> list[str]:
     if loitered:
         said.append(
             f"PoLMDP's {loitered} failures loitered where r_leg is high: positive rewards and a "
-            "goal that does not end the task do not promise arrival. The paper counts timeouts only."
+            "goal that does not end the task promise no arrival. The paper counts timeouts only."
         )
     if lost + late == 0:
         return [*said, "L-MDP did not fail."]
