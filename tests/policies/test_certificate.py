@@ -133,6 +133,7 @@ def test_any_policy_has_the_steps_that_dense_linear_algebra_gives(seed, openness
     arrives = ~reached[:, lost].any(axis=1)
     certificate = certify(maze, policy, goal, ACTIONS)
     assert np.array_equal(certificate.arrives, arrives)
+    assert np.isinf(certificate.expected_steps[~arrives]).all()
     way = arrives & (np.arange(30) != goal)
     leave = np.eye(way.sum()) - chain[np.ix_(way, way)]
     steps = np.linalg.solve(leave, np.ones(way.sum()))
