@@ -142,16 +142,13 @@ class Rounds:
         return reply
 
     def _rival(self, message: Message, letters: list[str]) -> Message:
-        """What another tab would send for the same moment: other facts under another key."""
-        facts = {
-            "stop_time_ms": 0.0,
-            "reached_end": False,
-            "guess": str(self._bot.rng.choice(letters)),
-        }
-        known = {name: value for name, value in facts.items() if name in type(message).model_fields}
-        if isinstance(message, Answered):
-            known["stop_time_ms"] = message.stop_time_ms
-        return message.model_copy(update={**known, "key": self._key(), "events": []})
+        """What another tab would say of the same moment, under a key of its own."""
+        other: dict[str, Any] = {}
+        if isinstance(message, Stopped):
+            other = {"stop_time_ms": 0.0, "reached_end": False}
+        elif isinstance(message, Answered):
+            other = {"guess": str(self._bot.rng.choice(letters))}
+        return message.model_copy(update={**other, "key": self._key(), "events": []})
 
     def _message(self, model: type[M], **facts: Any) -> M:
         events, self._events = self._events, []
