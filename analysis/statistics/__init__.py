@@ -1,0 +1,1 @@
+"""Statistical methods on plain arrays: nothing here knows files, plans or reports."""

@@ -1,0 +1,52 @@
+"""One measure of all trials, with what groups them: what every method takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import EmptyArmError
+
+Numbers = NDArray[np.float64]
+Clusters = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A measure of N trials, all arrays of shape (N,).
+
+    `y` in `unit`, NaN where missing; `treated[i]`: whether trial i is of the treatment arm;
+    `participant[i]`, `scenario[i]`: numbers from 0 of the clusters it belongs to.
+    """
+
+    name: str
+    unit: str
+    y: Numbers
+    treated: NDArray[np.bool_]
+    participant: Clusters
+    scenario: Clusters
+
+    @property
+    def n_missing(self) -> int:
+        """How many trials lack the measure."""
+        return int(np.isnan(self.y).sum())
+
+    def present(self) -> Outcome:
+        """The trials that have it, clusters numbered anew; EmptyArmError if an arm has none."""
+        there = ~np.isnan(self.y)
+        treated = self.treated[there]
+        for arm, size in (("treatment", treated.sum()), ("reference", (~treated).sum())):
+            if not size:
+                raise EmptyArmError(arm, self.name)
+        return Outcome(
+            self.name,
+            self.unit,
+            self.y[there],
+            treated,
+            *(
+                np.unique(each[there], return_inverse=True)[1]
+                for each in (self.participant, self.scenario)
+            ),
+        )

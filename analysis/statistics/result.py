@@ -1,0 +1,34 @@
+"""What every test and estimate returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class TestResult:
+    """An estimate with its interval, and the test of its null value; None where undefined.
+
+    `estimate`, `se`, `low`, `high` (95 %) and `null` in `unit`; positive estimates mean more in the
+    treatment arm. `statistic` is what `symbol` names (t, z, chi2, F, U, ...) on `df` degrees of
+    freedom (a pair for F). `n` counts the trials, or what `of` names, that were used.
+    """
+
+    __test__ = False  # not a test of pytest's
+
+    estimate: float | None
+    low: float | None
+    high: float | None
+    null: float
+    unit: str
+    symbol: str
+    statistic: float | None
+    df: float | tuple[float, float] | None
+    p: float | None
+    n: int
+    n_missing: int
+    method: str
+    source: str
+    se: float | None = None
+    of: str = "trials"
+    warnings: tuple[str, ...] = ()
