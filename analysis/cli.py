@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from .errors import AnalysisError
+from .command_line import one_line_errors, status
 
 commands = typer.Typer()
 """Without a callback, so that another Typer can take its commands in without a group's name."""
@@ -37,7 +35,7 @@ def analyse(
 
     Example: goalguess analyse export/ --to report/
     """
-    with _one_line_errors(), _progress() as tell:
+    with one_line_errors(), status() as tell:
         tell("Loading the statistics")
         from .document import plain_text
         from .publish import analyse_path, write_report
@@ -52,22 +50,3 @@ def analyse(
         typer.echo("Add --to DIR for report.md, report.json and the figures.", err=True)
     else:
         typer.echo(f"Written: {to / 'report.md'}, report.json, figures/", err=True)
-
-
-@contextmanager
-def _one_line_errors() -> Iterator[None]:
-    """Turn an error of ours into one line and exit code 2."""
-    try:
-        yield
-    except AnalysisError as error:
-        typer.echo(f"goalguess: {' '.join(str(error).split())}", err=True)
-        raise typer.Exit(2) from error
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[str], None]]:
-    """Show on the terminal what is being done, and nothing where no one looks."""
-    from rich.console import Console
-
-    with Console(stderr=True).status("") as status:
-        yield status.update
