@@ -2,6 +2,7 @@
 
 AnalysisError
 ├── TableError      a table breaks its contract: file, row, column, expected, got
+├── TomlError       a plan or a mapping says what it cannot: file, key, expected, got
 └── EmptyArmError   a condition has no value to compare
 """
 
@@ -36,6 +37,18 @@ class TableError(AnalysisError):
             where.append(f"column {column}")
         more = f" (and {further} more problem{'s' if further > 1 else ''})" if further else ""
         super().__init__(f"{', '.join(where)}: expected {expected}, got {got}{more}")
+
+
+class TomlError(AnalysisError):
+    """A plan or a mapping, written as TOML, cannot be followed.
+
+    `key` is dotted as in the file, and empty when the whole file is meant.
+    """
+
+    def __init__(self, file: str, key: str, expected: str, got: str) -> None:
+        self.file, self.key, self.expected, self.got = file, key, expected, got
+        where = f"{file}, key {key}" if key else file
+        super().__init__(f"{where}: expected {expected}, got {got}")
 
 
 class EmptyArmError(AnalysisError):

@@ -1,0 +1,134 @@
+"""Rules by which participants are left out: none is active unless the plan names it.
+
+Each rule is a function of its parameters that gives one polars expression: whether a participant
+is left out, seen over all rows of theirs in the rule's table. Whoever is taken by several rules
+counts for the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import polars as pl
+
+from .contract import PARTICIPANTS, TRIALS
+from .errors import TomlError
+
+
+@dataclass(frozen=True)
+class Exclusion:
+    """A rule that the plan makes active: its name in `RULES`, and its parameters."""
+
+    rule: str
+    parameters: Mapping[str, float]
+
+    @property
+    def reason(self) -> str:
+        """What is said of those it takes, as in: answered fewer than 10 trials."""
+        return RULES[self.rule].reason.format(**self.parameters)
+
+
+@dataclass(frozen=True)
+class Excluded:
+    """Whom an active rule took: participants with trials that no earlier rule took."""
+
+    exclusion: Exclusion
+    participants: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a rule takes, the reason that reports give, and the types of its parameters."""
+
+    takes: Callable[..., pl.Expr]
+    reason: str
+    parameters: Mapping[str, type] = field(default_factory=dict)
+    table: str = TRIALS.name
+
+
+def incomplete(fewer_than: int) -> pl.Expr:
+    """Too few trials answered."""
+    return pl.len() < fewer_than
+
+
+def too_fast_trials(at_least: int) -> pl.Expr:
+    """Too many stops before the robot's first decision could be seen."""
+    return pl.col("too_fast").sum() >= at_least
+
+
+def same_guess() -> pl.Expr:
+    """One area guessed all along, in two trials or more."""
+    guesses = pl.col("guess")
+    return (guesses.count() == pl.len()) & (pl.len() > 1) & (guesses.n_unique() == 1)
+
+
+def never_moved_pointer() -> pl.Expr:
+    """No sign of mouse, finger or pen in any trial; takes whoever plays by keyboard, too."""
+    return pl.col("pointer_moved").eq_missing(False).all()
+
+
+def long_pauses(above_s: float) -> pl.Expr:
+    """Animations stood still for too long, because the page was hidden."""
+    return pl.col("paused_s").sum() > above_s
+
+
+def duplicate_stimuli() -> pl.Expr:
+    """A scenario came twice; within a condition each has one stimulus."""
+    return pl.col("scenario").n_unique() < pl.len()
+
+
+def failed_control_question(tries_above: int) -> pl.Expr:
+    """Too many answers until the control question was passed."""
+    return pl.col("control_tries").max() > tries_above
+
+
+RULES = {
+    "incomplete": Rule(incomplete, "answered fewer than {fewer_than} trials", {"fewer_than": int}),
+    "too_fast_trials": Rule(
+        too_fast_trials, "stopped too fast in {at_least} trials or more", {"at_least": int}
+    ),
+    "same_guess": Rule(same_guess, "guessed the same area in all trials"),
+    "never_moved_pointer": Rule(never_moved_pointer, "never moved the pointer"),
+    "long_pauses": Rule(
+        long_pauses, "paused for more than {above_s:g} s in all", {"above_s": float}
+    ),
+    "duplicate_stimuli": Rule(duplicate_stimuli, "saw a scenario more than once"),
+    "failed_control_question": Rule(
+        failed_control_question,
+        "needed more than {tries_above} tries for the control question",
+        {"tries_above": int},
+        PARTICIPANTS.name,
+    ),
+}
+"""Every rule that a plan may name."""
+
+
+def exclude(
+    exclusions: Sequence[Exclusion],
+    trials: pl.DataFrame,
+    participants: pl.DataFrame | None,
+    plan_file: str,
+) -> tuple[Excluded, ...]:
+    """Run the active rules in their order on all who have trials.
+
+    TomlError, naming the rule's place in `plan_file`, where a table or column it needs is missing.
+    """
+    tables = {TRIALS.name: trials, PARTICIPANTS.name: participants}
+    left = trials.select(pl.col("participant").unique())
+    taken = []
+    for place, exclusion in enumerate(exclusions, start=1):
+        rule = RULES[exclusion.rule]
+        takes = rule.takes(**exclusion.parameters)
+        table = tables[rule.table]
+        missing = set(takes.meta.root_names()) - set(() if table is None else table.columns)
+        if table is None or missing:
+            wanted = f"the column {', '.join(sorted(missing))} in the table {rule.table}"
+            raise TomlError(
+                plan_file, f"exclusions[{place}].rule", f"{wanted} for {exclusion.rule}", "none"
+            )
+        found = table.group_by("participant").agg(takes.alias("taken")).filter("taken")
+        out = left.join(found, on="participant", how="semi")["participant"].sort()
+        left = left.join(out.to_frame(), on="participant", how="anti")
+        taken.append(Excluded(exclusion, tuple(out)))
+    return tuple(taken)
