@@ -10,18 +10,13 @@ from numpy.typing import NDArray
 
 from .contract import CONDITIONS, REFERENCE, TREATMENT
 from .demographics import Demographics, demographics
-from .estimates import Mean, Share, mean
-from .paper_tests import (
-    ChiSquare,
-    MannWhitney,
-    Normality,
-    TwoByTwo,
-    chi_square,
-    mann_whitney,
-    normality,
-)
+from .errors import EmptyArmError
 from .reader import Dataset
 from .sample import Sample, sample
+from .statistics.estimates import Mean, Share, mean
+from .statistics.normality import Normality, normality
+from .statistics.ranks import MannWhitney, mann_whitney
+from .statistics.two_by_two import ChiSquare, TwoByTwo, chi_square
 
 
 @dataclass(frozen=True)
@@ -70,8 +65,16 @@ def values_of(data: Dataset, arm: str, measure: str) -> NDArray[np.float64]:
     return column.cast(pl.Float64).to_numpy()
 
 
+def _values_of_arms(data: Dataset, measure: str) -> dict[str, NDArray[np.float64]]:
+    values = {arm: values_of(data, arm, measure) for arm in CONDITIONS}
+    for arm, each in values.items():
+        if np.isnan(each).all():
+            raise EmptyArmError(arm, "guess" if measure == "correct" else measure)
+    return values
+
+
 def _accuracy(data: Dataset) -> Accuracy:
-    count = {arm: values_of(data, arm, "correct") for arm in CONDITIONS}
+    count = _values_of_arms(data, "correct")
     table = TwoByTwo(
         treatment_correct=int((count[TREATMENT] == 1).sum()),
         treatment_wrong=int((count[TREATMENT] == 0).sum()),
@@ -84,7 +87,7 @@ def _accuracy(data: Dataset) -> Accuracy:
 
 
 def _ranked(data: Dataset, measure: str, unit: str) -> Ranked:
-    values = {arm: values_of(data, arm, measure) for arm in CONDITIONS}
+    values = _values_of_arms(data, measure)
     test = mann_whitney(values[TREATMENT], values[REFERENCE], measure)
     return Ranked(
         arms={arm: mean(values[arm], unit) for arm in CONDITIONS},

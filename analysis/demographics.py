@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import polars as pl
 
 from .contract import CONDITIONS
-from .estimates import Mean, mean
 from .reader import Dataset
+from .statistics.estimates import Mean, mean
 
 OVERALL = "overall"
 GROUPS = (*CONDITIONS, OVERALL)

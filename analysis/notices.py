@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from .as_in_paper import PaperBlock
 from .contract import CONDITIONS, LABELS
-from .paper_tests import CONSTANT_OUTCOME, DEGENERATE_MARGIN, TOO_FEW_VALUES
 from .reader import Dataset
+from .statistics.codes import CONSTANT_OUTCOME, DEGENERATE_MARGIN, TOO_FEW_VALUES
 
 _TEXTS = {
     DEGENERATE_MARGIN: "all guesses were alike, so chi-square is not defined and p is set to 1",

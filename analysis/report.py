@@ -9,9 +9,9 @@ from .as_in_paper import PaperBlock, Ranked
 from .contract import CONDITIONS, LABELS, REFERENCE, TREATMENT
 from .demographics import GROUPS, Demographics
 from .document import Grid, Heading, Items, Paragraph, Part, Picture
-from .estimates import Mean
 from .notices import Notice
 from .reader import Dataset
+from .statistics.estimates import Mean
 
 FIGURES = {
     "correct": "Percentage of correct guesses per condition, with 95 % intervals",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from .paper_tests import ChiSquare, MannWhitney, Normality
+from .statistics.normality import Normality
+from .statistics.ranks import MannWhitney
+from .statistics.two_by_two import ChiSquare
 
 ALPHA = 0.05
 
@@ -42,18 +44,18 @@ def percent(share: float) -> str:
 
 def chi_square_statistic(test: ChiSquare) -> str:
     """Write the statistic with its degrees of freedom: chi2(1) = 48.864."""
-    return f"chi2({test.df}) = {'NA' if test.chi2 is None else format(test.chi2, '.3f')}"
+    return f"chi2({test.df}) = {'NA' if test.statistic is None else format(test.statistic, '.3f')}"
 
 
 def chi_square_apa(test: ChiSquare) -> str:
     """Write the test in one line: chi2(1) = 48.864, p < .001, N = 1500, phi = .180."""
-    phi = "NA" if test.phi is None else without_zero(test.phi, 3)
+    phi = "NA" if test.estimate is None else without_zero(test.estimate, 3)
     return f"{chi_square_statistic(test)}, {format_p(test.p)}, N = {test.n}, phi = {phi}"
 
 
 def mann_whitney_apa(test: MannWhitney) -> str:
     """Write the test in one line, with the smaller U as the paper prints it and the treatment's."""
-    z = "NA" if test.z is None else f"{test.z:.2f}"
+    z = "NA" if test.statistic is None else f"{test.statistic:.2f}"
     return (
         f"U = {format_u(test.u_smaller)}, {format_p(test.p)}, z = {z}, "
         f"n = {test.n_treatment} and {test.n_reference}, "
@@ -66,6 +68,5 @@ def normality_apa(test: Normality) -> str:
     """Write the test in one line: W or A2, and p."""
     if test.statistic is None:
         return f"{test.method}: not defined, n = {test.n}"
-    symbol = "W" if test.method == "Shapiro-Wilk" else "A2"
     p = format_p(test.p, test.p_relation)
-    return f"{test.method}: {symbol} = {test.statistic:.4f}, {p}, n = {test.n}"
+    return f"{test.method}: {test.symbol} = {test.statistic:.4f}, {p}, n = {test.n}"

@@ -24,7 +24,7 @@ def paper(paper_fixture):
 
 
 def test_the_fixture_gives_the_papers_chi_square(paper):
-    assert f"{paper.correct.test.chi2:.3f}" == "48.864"
+    assert f"{paper.correct.test.statistic:.3f}" == "48.864"
     assert paper.correct.test.df == 1
 
 
@@ -78,9 +78,9 @@ def test_swapping_the_labels_mirrors_the_tests(tmp_path):
     swapped = [row | {"condition": other[row["condition"]]} for row in rows]
     one = as_in_paper(read_dataset(write_table(TRIALS, rows, tmp_path / "a")[0]))
     two = as_in_paper(read_dataset(write_table(TRIALS, swapped, tmp_path / "b")[0]))
-    assert one.correct.test.chi2 == pytest.approx(two.correct.test.chi2)
-    assert two.correct.test.phi is not None
-    assert one.correct.test.phi == pytest.approx(-two.correct.test.phi)
+    assert one.correct.test.statistic == pytest.approx(two.correct.test.statistic)
+    assert two.correct.test.estimate is not None
+    assert one.correct.test.estimate == pytest.approx(-two.correct.test.estimate)
     assert one.confidence.test.u_treatment == two.confidence.test.u_reference
     assert one.confidence.test.p == pytest.approx(two.confidence.test.p)
 

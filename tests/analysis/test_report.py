@@ -101,7 +101,7 @@ def test_report_json_holds_every_estimate_at_full_precision(written, paper):
     report = json.loads((written / "report.json").read_text())
     block = report["as_in_paper"]
     assert report["schema_version"] == 1
-    assert block["correct"]["test"]["chi2"] == paper.block.correct.test.chi2
+    assert block["correct"]["test"]["statistic"] == paper.block.correct.test.statistic
     assert block["prediction_time"]["arms"]["polmdp"]["mean"] == 15.670102040816328
     assert block["confidence"]["test"]["u_treatment"] == 278397
     assert block["trials_treated_as_independent"] is True

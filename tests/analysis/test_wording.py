@@ -4,7 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from analysis.paper_tests import TwoByTwo, chi_square, mann_whitney, normality
+from analysis.statistics.normality import normality
+from analysis.statistics.ranks import mann_whitney
+from analysis.statistics.two_by_two import TwoByTwo, chi_square
 from analysis.wording import (
     chi_square_apa,
     format_p,

@@ -1,0 +1,16 @@
+"""Comparing results with golden cases."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+
+def holds(case: Mapping[str, Any], found: Mapping[str, Any]) -> None:
+    """Compare numbers with the case's, within its tolerance; a failure tells the source."""
+    for name, value in found.items():
+        expected = case["expected"][name]
+        wanted = (
+            expected if expected is None else pytest.approx(expected, rel=1e-9, abs=case["tol"])
+        )
+        assert value == wanted, f"{name} of {case['id']}: {case['source']}"
