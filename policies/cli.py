@@ -26,7 +26,7 @@ commands = typer.Typer(
 stimuli = typer.Typer(no_args_is_help=True, help="Build, prove and look at the pool of stimuli.")
 commands.add_typer(stimuli, name="stimuli")
 commands.command()(compare)
-commands.add_typer(teach, name="teach")
+commands.command()(teach)
 
 DATA = Path(__file__).parent / "stimuli"
 PACKAGE = "the package's own"

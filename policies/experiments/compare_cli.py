@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from policies.command_line import one_clear_line
+from policies.experiments.run_options import Mazes, Out, Resume, Seed, Workers, progress_bar
 
 
 def compare(
@@ -18,28 +19,21 @@ def compare(
     mode: Annotated[
         str, typer.Option(metavar="miura|as_reported", help="L-MDP as published, or as baseline.")
     ] = "miura",
-    seed: Annotated[int, typer.Option(help="Seed of mazes, pairs and plays.")] = 2209,
-    mazes: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Take this folder's mazes (.txt) instead.")
-    ] = None,
-    workers: Annotated[int, typer.Option(min=1, help="Processes at work.")] = 2,
+    seed: Seed = 2209,
+    mazes: Mazes = None,
+    workers: Workers = 2,
     dask: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="Work on this dask cluster (its scheduler) instead."),
     ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder of results, made if need be.")
-    ] = Path("comparison"),
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with a run that ended.")] = False,
+    out: Out = Path("comparison"),
+    resume: Resume = False,
 ) -> None:
     """Let PoLMDP, L-MDP and the optimal policy play the same pairs; tables, figures, a reading.
 
     Example: goalguess compare states --pairs 20 --simulations 1000
     """
     with one_clear_line():
-        from rich.console import Console
-        from rich.progress import MofNCompleteColumn, Progress, TimeRemainingColumn
-
         from policies.experiments.publish import publish_comparison
         from policies.experiments.scaling import Comparison, compare_frameworks, open_comparison
         from policies.experiments.worlds import drawn_worlds, read_worlds
@@ -50,20 +44,7 @@ def compare(
         )
         worlds = read_worlds(mazes) if mazes else drawn_worlds(comparison.test, seed)
         store = open_comparison(out, worlds, comparison, resume=resume)
-        columns = (
-            *Progress.get_default_columns()[:-1],
-            MofNCompleteColumn(),
-            TimeRemainingColumn(),
-        )
-        with Progress(*columns, console=Console(stderr=True)) as progress:
-            task = progress.add_task("Playing pairs", total=None)
-            compare_frameworks(
-                worlds,
-                comparison,
-                store,
-                workers,
-                dask,
-                lambda done, total: progress.update(task, completed=done, total=total),
-            )
+        with progress_bar("Playing pairs") as show:
+            compare_frameworks(worlds, comparison, store, workers, dask, show)
         typer.echo(publish_comparison(store.file, comparison))
         typer.echo(f"Tables, figures and this text: {out}", err=True)

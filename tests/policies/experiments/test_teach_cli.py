@@ -52,10 +52,10 @@ def test_a_second_run_is_refused_in_one_line_and_resumed_by_option(mazes, tmp_pa
 @pytest.mark.parametrize(
     ("options", "said"),
     [
+        (["--mazes", "no-such-folder"], "no-such-folder: expected a folder with maze files"),
         (["--sets", "1"], "expected at least 2 units for an interval, came 1"),
         (["--predictor", "x"], "expected predictor in bayes, gradient; came 'x'"),
         (["--eta", "0"], "expected a finite eta above 0, came 0"),
-        (["--mazes", "no-such-folder"], "no-such-folder: expected a folder with maze files"),
     ],
 )
 def test_bad_input_is_one_clear_line_and_leaves_nothing(tmp_path, options, said):
@@ -66,7 +66,12 @@ def test_bad_input_is_one_clear_line_and_leaves_nothing(tmp_path, options, said)
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("lessons", ["sequences", "samples"])
-def test_help_has_an_example(lessons):
-    text = " ".join(run(lessons, "--help").stdout.replace("│", " ").split())
-    assert f"Example: goalguess teach {lessons}" in text
+def test_lessons_of_an_unknown_kind_are_refused(tmp_path):
+    result = run("songs", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "expected lessons in sequences, samples; came 'songs'" in result.stderr
+
+
+def test_help_has_an_example():
+    text = " ".join(run("--help").stdout.replace("│", " ").split())
+    assert "Example: goalguess teach samples" in text
