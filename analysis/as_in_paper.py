@@ -8,10 +8,10 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from .contract import CONDITIONS, REFERENCE, TREATMENT
+from .arms import Arms
+from .dataset import Dataset
 from .demographics import Demographics, demographics
 from .errors import EmptyArmError
-from .reader import Dataset
 from .sample import Sample, sample
 from .statistics.estimates import Mean, Share, mean
 from .statistics.normality import Normality, normality
@@ -41,6 +41,7 @@ class Ranked:
 class PaperBlock:
     """Everything of the paper's block; `demographics` is None without a participants table."""
 
+    arms: Arms
     sample: Sample
     correct: Accuracy
     prediction_time: Ranked
@@ -51,6 +52,7 @@ class PaperBlock:
 def as_in_paper(data: Dataset) -> PaperBlock:
     """Compute the paper's statistics; EmptyArmError if a condition has no value of a measure."""
     return PaperBlock(
+        arms=data.arms,
         sample=sample(data),
         correct=_accuracy(data),
         prediction_time=_ranked(data, "prediction_time_s", "s"),
@@ -66,7 +68,7 @@ def values_of(data: Dataset, arm: str, measure: str) -> NDArray[np.float64]:
 
 
 def _values_of_arms(data: Dataset, measure: str) -> dict[str, NDArray[np.float64]]:
-    values = {arm: values_of(data, arm, measure) for arm in CONDITIONS}
+    values = {arm: values_of(data, arm, measure) for arm in data.arms.names}
     for arm, each in values.items():
         if np.isnan(each).all():
             raise EmptyArmError(arm, "guess" if measure == "correct" else measure)
@@ -75,22 +77,23 @@ def _values_of_arms(data: Dataset, measure: str) -> dict[str, NDArray[np.float64
 
 def _accuracy(data: Dataset) -> Accuracy:
     count = _values_of_arms(data, "correct")
+    treatment, reference = count.values()
     table = TwoByTwo(
-        treatment_correct=int((count[TREATMENT] == 1).sum()),
-        treatment_wrong=int((count[TREATMENT] == 0).sum()),
-        reference_correct=int((count[REFERENCE] == 1).sum()),
-        reference_wrong=int((count[REFERENCE] == 0).sum()),
-        n_missing_treatment=int(np.isnan(count[TREATMENT]).sum()),
-        n_missing_reference=int(np.isnan(count[REFERENCE]).sum()),
+        treatment_correct=int((treatment == 1).sum()),
+        treatment_wrong=int((treatment == 0).sum()),
+        reference_correct=int((reference == 1).sum()),
+        reference_wrong=int((reference == 0).sum()),
+        n_missing_treatment=int(np.isnan(treatment).sum()),
+        n_missing_reference=int(np.isnan(reference).sum()),
     )
-    return Accuracy(table, dict(zip(CONDITIONS, table.arms, strict=True)), chi_square(table))
+    return Accuracy(table, dict(zip(count, table.arms, strict=True)), chi_square(table))
 
 
 def _ranked(data: Dataset, measure: str, unit: str) -> Ranked:
     values = _values_of_arms(data, measure)
-    test = mann_whitney(values[TREATMENT], values[REFERENCE], measure)
+    treatment, reference = values.values()
     return Ranked(
-        arms={arm: mean(values[arm], unit) for arm in CONDITIONS},
-        normality={arm: normality(values[arm]) for arm in CONDITIONS},
-        test=test,
+        arms={arm: mean(each, unit) for arm, each in values.items()},
+        normality={arm: normality(each) for arm, each in values.items()},
+        test=mann_whitney(treatment, reference, measure),
     )

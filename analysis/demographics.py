@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from .contract import CONDITIONS
-from .reader import Dataset
+from .dataset import Dataset
 from .statistics.estimates import Mean, mean
 
 OVERALL = "overall"
-GROUPS = (*CONDITIONS, OVERALL)
+"""The group of everybody, beside the conditions."""
 
 QUESTIONS = ("gender", "nationality", "education", "occupation", "robot_familiarity")
 """Questions answered by a choice or a word; age, a number, is described apart."""
@@ -21,7 +20,7 @@ NO_ANSWER = "no answer"
 
 @dataclass(frozen=True)
 class Answer:
-    """One answer to a question: `counts` per group of `GROUPS`."""
+    """One answer to a question: `counts` per condition and `OVERALL`."""
 
     answer: str
     counts: dict[str, int]
@@ -31,8 +30,8 @@ class Answer:
 class Demographics:
     """Answers of the participants whose trials are analysed.
 
-    `n` has the participants per group; `age` their age in years, None for a group in which
-    nobody told it; `answers` lists each question's answers, most frequent first.
+    `n` has the participants per condition and `OVERALL`; `age` their age in years, None for a
+    group in which nobody told it; `answers` lists each question's answers, most frequent first.
     """
 
     n: dict[str, int]
@@ -47,7 +46,7 @@ def demographics(data: Dataset) -> Demographics | None:
     people = data.participants.join(
         data.trials.select("participant").unique(), on="participant", how="semi"
     )
-    groups = {arm: people.filter(pl.col("condition") == arm) for arm in CONDITIONS}
+    groups = {arm: people.filter(pl.col("condition") == arm) for arm in data.arms.names}
     groups[OVERALL] = people
     return Demographics(
         n={name: len(group) for name, group in groups.items()},
@@ -65,6 +64,6 @@ def _answers(question: str, groups: dict[str, pl.DataFrame]) -> tuple[Answer, ..
     given = {name: group[question].fill_null(NO_ANSWER).to_list() for name, group in groups.items()}
     different = sorted(set(given[OVERALL]))
     table = [
-        Answer(answer, {name: given[name].count(answer) for name in GROUPS}) for answer in different
+        Answer(answer, {name: given[name].count(answer) for name in groups}) for answer in different
     ]
     return tuple(sorted(table, key=lambda row: -row.counts[OVERALL]))

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .as_in_paper import PaperBlock
-from .contract import CONDITIONS, LABELS
-from .reader import Dataset
+from .dataset import Dataset
 from .statistics.codes import CONSTANT_OUTCOME, DEGENERATE_MARGIN, TOO_FEW_VALUES
 
 _TEXTS = {
@@ -71,8 +70,8 @@ def _about_tests(block: PaperBlock) -> list[Notice]:
         ("confidence", block.confidence),
     ):
         found += [_of_test(code, name) for code in ranked.test.warnings]
-        for arm in CONDITIONS:
-            about = f"normality of {name}, {LABELS[arm]}"
+        for arm, label in block.arms.labels.items():
+            about = f"normality of {name}, {label}"
             found += [_of_test(code, about) for code in ranked.normality[arm].warnings]
     return found
 

@@ -3,34 +3,34 @@
 Two layouts are read. A file with all columns of `contract.TRIALS` (an older one lacks those that
 came later) is an export of Goalguess and is held to the whole contract. Any other file is a table
 of trials from elsewhere: it needs the columns of `NEEDED` (with `correct`, or `guess` and `goal`),
-may use the names of `ALIASES`, and may have missing answers, which are counted and left out of the
-estimates that need them.
+under these names, those of `mapping.ALIASES` or those that a mapping tells; it may have further
+conditions, which the plan leaves out; and it may have missing answers, which are counted and left
+out of the estimates that need them.
 """
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import polars as pl
 
-from .contract import CONDITIONS, PARTICIPANTS, TRIALS
-from .derive import correct_guesses, prediction_times_s
+from . import derive
+from .columns import Table
+from .contract import PARTICIPANTS, TRIALS
+from .dataset import Dataset, Source
 from .errors import AnalysisError, EmptyArmError, TableError
+from .exclusions import exclude
+from .flow import participant_flow
+from .mapping import TableMapping
 from .participant_rules import participant_problems
+from .plan import Plan, default_plan
 from .scanning import FORMATS, is_empty_jsonl, scan, typed
 from .tables import read_rows
 from .trial_rules import membership_problems, trial_problems
 from .validation import ROW, column_problems, raise_first
-
-ALIASES = {
-    "video": "scenario",
-    "trial": "trial_index",
-    "stop_time": "stop_time_s",
-    "video_length": "length_s",
-}
-"""Names in tables from elsewhere, and the names of the contract they stand for (times in s)."""
 
 NEEDED = (
     "participant",
@@ -57,61 +57,80 @@ ANSWERS = (
 
 
 @dataclass(frozen=True)
-class Source:
-    """A file that was read: its name, SHA-256 in hexadecimal, and number of rows."""
-
-    file: str
-    sha256: str
-    rows: int
-
-
-@dataclass(frozen=True)
-class Dataset:
-    """Checked data. `trials` has the columns of the contract that its file has, and always
-    participant, condition, scenario, trial_index, correct, prediction_time_s and confidence;
-    the last three are null where missing. `participants` is None without such a table.
-
-    `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
-    `renamed` pairs the file's column names with those of the contract.
-    """
+class _Tables:
+    """The tables of a study as they came, checked, with `ROW`; `participants` may be missing."""
 
     trials: pl.DataFrame
     participants: pl.DataFrame | None
     sources: tuple[Source, ...]
-    simulated: int
-    preview: int
-    with_simulated: bool
     renamed: tuple[tuple[str, str], ...]
 
 
-def read_dataset(path: Path, *, with_simulated: bool = False) -> Dataset:
+def read_dataset(
+    path: Path,
+    plan: Plan | None = None,
+    mapping: TableMapping | None = None,
+    *,
+    with_simulated: bool = False,
+) -> Dataset:
     """Read an export folder or one file of trials (.csv, .parquet, .jsonl) and check it.
 
-    Rows of simulated and preview participants are left out unless `with_simulated`.
-    TableError for the first broken rule, EmptyArmError for a condition without trials.
+    Follows the default plan if given none. Rows of simulated and preview participants are left
+    out unless `with_simulated`. TableError for the first broken rule, TomlError for a plan or a
+    mapping that does not fit the data, EmptyArmError for a condition without trials.
     """
-    trials_path, participants_path = _find(path)
-    rows, renamed = _read_trials(trials_path)
-    sources = [_source(trials_path, rows)]
-    trials = rows if with_simulated else _only_real(rows)
-    participants = None
-    if participants_path is not None:
-        everyone = read_rows(PARTICIPANTS, participants_path)
-        raise_first(participants_path.name, participant_problems(everyone))
-        sources.append(_source(participants_path, everyone))
-        participants = everyone if with_simulated else _only_real(everyone)
-        raise_first(trials_path.name, membership_problems(rows, everyone, participants_path.name))
+    plan, mapping = plan or default_plan(), mapping or TableMapping()
+    tables = _read_tables(path, mapping)
+    trials, participants = tables.trials.drop(ROW), tables.participants
+    if participants is not None:
         participants = participants.drop(ROW)
-    _check_arms(rows, trials)
-    return Dataset(
-        trials=trials.drop(ROW),
-        participants=participants,
-        sources=tuple(sources),
-        simulated=_count(rows, "simulated"),
-        preview=_count(rows, "preview"),
-        with_simulated=with_simulated,
-        renamed=renamed,
+    if not with_simulated:
+        trials = _only_real(trials)
+        participants = None if participants is None else _only_real(participants)
+    compared = pl.col("condition").is_in(plan.arms.names)
+    others = trials.filter(~compared)
+    trials = trials.filter(compared).with_columns(
+        treated=pl.col("condition") == plan.arms.treatment.condition
     )
+    left_out = len(tables.trials) - len(trials) - len(others)
+    _check_arms(plan, trials, others, _and_left_out(left_out))
+    excluded = exclude(plan.exclusions, trials, participants, plan.file)
+    out = pl.Series([name for each in excluded for name in each.participants], dtype=pl.String)
+    kept = ~pl.col("participant").is_in(out.implode())
+    analysed = trials.filter(kept)
+    _check_arms(plan, analysed, others.clear(), f" ({len(out)} participants excluded by the plan)")
+    return Dataset(
+        plan=plan,
+        trials=analysed,
+        participants=None if participants is None else participants.filter(kept),
+        sources=tables.sources,
+        simulated=_count(tables.trials, "simulated"),
+        preview=_count(tables.trials, "preview"),
+        with_simulated=with_simulated,
+        other_conditions=_by_condition(others, pl.len()),
+        excluded=excluded,
+        flow=participant_flow(
+            plan.arms,
+            trials,
+            participants,
+            _by_condition(others, pl.col("participant").n_unique()),
+            excluded,
+        ),
+        renamed=tables.renamed,
+        confidence_scale=mapping.confidence,
+    )
+
+
+def _read_tables(path: Path, mapping: TableMapping) -> _Tables:
+    trials_path, participants_path = _find(path)
+    trials, renamed = _read_trials(trials_path, mapping)
+    source = _source(trials_path, trials)
+    if participants_path is None:
+        return _Tables(trials, None, (source,), renamed)
+    everyone = read_rows(PARTICIPANTS, participants_path)
+    raise_first(participants_path.name, participant_problems(everyone))
+    raise_first(trials_path.name, membership_problems(trials, everyone, participants_path.name))
+    return _Tables(trials, everyone, (source, _source(participants_path, everyone)), renamed)
 
 
 def _find(path: Path) -> tuple[Path, Path | None]:
@@ -132,29 +151,45 @@ def _in_any_format(folder: Path, name: str) -> Path | None:
     return next((path for path in candidates if path.is_file()), None)
 
 
-def _read_trials(path: Path) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...]]:
+def _read_trials(
+    path: Path, mapping: TableMapping
+) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...]]:
     if is_empty_jsonl(path):
         raise AnalysisError(f"{path.name}: expected at least one trial, got an empty file")
     raw, names = scan(path)
-    renamed = tuple((name, ALIASES[name]) for name in names if name in ALIASES)
-    for name, meant in renamed:
-        if meant in names:
-            raise TableError(path.name, f"{name} or {meant}", "both columns", row=1)
-    raw = raw.rename(dict(renamed))
-    present = {ALIASES.get(name, name) for name in names}
-    _check_columns(path, names, present)
-    columns = [column for column in TRIALS.columns if column.name in present]
-    trials, problems = typed(raw, columns, path)
+    sources = mapping.sources(names, path.name)
+    _check_columns(path, names, sources)
+    table = _table_of(mapping, sources)
+    present = [column for column in table.columns if column.name in sources]
+    raw = raw.select(ROW, *(pl.col(theirs).alias(ours) for ours, theirs in sources.items()))
+    trials, problems = typed(raw, present, path)
+    trials = mapping.translated(trials)
     unread = [problem.column for problem in problems]
-    optional = [*unread, *(() if present >= set(TRIALS.always) else ANSWERS)]
-    problems += column_problems(trials, TRIALS, optional) + trial_problems(trials)
-    raise_first(path.name, problems, {meant: name for name, meant in renamed})
+    optional = [*unread, *(() if _is_export(sources) else ANSWERS)]
+    problems += column_problems(trials, table, optional) + trial_problems(trials)
+    raise_first(path.name, problems, sources)
+    renamed = tuple((theirs, ours) for ours, theirs in sources.items() if theirs != ours)
     return _with_measures(trials), renamed
 
 
-def _check_columns(path: Path, names: list[str], present: set[str]) -> None:
+def _is_export(columns: Collection[str]) -> bool:
+    return set(columns) >= set(TRIALS.always)
+
+
+def _table_of(mapping: TableMapping, columns: Collection[str]) -> Table:
+    """Return the trials' contract as it binds this file: elsewhere conditions have other names."""
+    declared = [mapping.declared(column) for column in TRIALS.columns]
+    if not _is_export(columns):
+        declared = [
+            replace(column, choices=()) if column.name == "condition" else column
+            for column in declared
+        ]
+    return replace(TRIALS, columns=tuple(declared))
+
+
+def _check_columns(path: Path, names: list[str], present: Collection[str]) -> None:
     missing = [name for name in NEEDED if name not in present]
-    if "correct" not in present and not {"guess", "goal"} <= present:
+    if "correct" not in present and not {"guess", "goal"} <= set(present):
         missing.append("correct (or guess and goal)")
     if missing:
         raise TableError(path.name, f"columns {', '.join(missing)}", ", ".join(names), row=1)
@@ -163,11 +198,9 @@ def _check_columns(path: Path, names: list[str], present: set[str]) -> None:
 def _with_measures(trials: pl.DataFrame) -> pl.DataFrame:
     """Fill in what was not recorded, by its definition."""
     if {"guess", "goal"} <= set(trials.columns):
-        derived = correct_guesses(trials["guess"], trials["goal"]).alias("derived")
         recorded = pl.col("correct") if "correct" in trials.columns else pl.lit(None, pl.Boolean)
-        trials = trials.with_columns(recorded.fill_null(derived).alias("correct"))
-    times = prediction_times_s(trials["stop_time_s"], trials["length_s"], trials["correct"])
-    return trials.with_columns(times.alias("prediction_time_s"))
+        trials = trials.with_columns(correct=recorded.fill_null(derive.CORRECT))
+    return trials.with_columns(prediction_time_s=derive.PREDICTION_TIME_S)
 
 
 def _only_real(rows: pl.DataFrame) -> pl.DataFrame:
@@ -179,12 +212,21 @@ def _count(rows: pl.DataFrame, mark: str) -> int:
     return int(rows[mark].sum()) if mark in rows.columns else 0
 
 
-def _check_arms(rows: pl.DataFrame, trials: pl.DataFrame) -> None:
-    left_out = len(rows) - len(trials)
-    note = f" ({left_out} simulated or preview trials left out)" if left_out else ""
-    for condition in CONDITIONS:
+def _by_condition(trials: pl.DataFrame, count: pl.Expr) -> dict[str, int]:
+    counts = trials.group_by("condition").agg(count.alias("count")).sort("condition")
+    return dict(counts.iter_rows())
+
+
+def _and_left_out(trials: int) -> str:
+    return f" ({trials} simulated or preview trials left out)" if trials else ""
+
+
+def _check_arms(plan: Plan, trials: pl.DataFrame, others: pl.DataFrame, note: str) -> None:
+    for condition in plan.arms.names:
         if trials.filter(pl.col("condition") == condition).is_empty():
-            raise EmptyArmError(condition, "trial", note)
+            found = ", ".join(others["condition"].unique().sort())
+            hint = f"; {plan.file} compares none of: {found}" if found else ""
+            raise EmptyArmError(condition, "trial", note + hint)
 
 
 def _source(path: Path, rows: pl.DataFrame) -> Source:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from . import wording
+from .arms import Arms
 from .as_in_paper import PaperBlock, Ranked
-from .contract import CONDITIONS, LABELS, REFERENCE, TREATMENT
-from .demographics import GROUPS, Demographics
+from .dataset import Dataset
+from .demographics import OVERALL
 from .document import Grid, Heading, Items, Paragraph, Part, Picture
 from .notices import Notice
-from .reader import Dataset
 from .statistics.estimates import Mean
 
 FIGURES = {
@@ -36,7 +36,6 @@ _FINE_PRINT = (
     "Intervals are at 95 %: Wilson's for shares, Student's t for means. Tests of normality "
     "describe the data and decide nothing.",
 )
-_LABELS = tuple(LABELS[arm] for arm in CONDITIONS)
 
 
 def report_parts(
@@ -53,11 +52,11 @@ def report_parts(
         Heading("Correct guesses"),
         *_correct(block),
         Heading("Time of prediction"),
-        *_ranked(block.prediction_time, "prediction_time"),
+        *_ranked(block.prediction_time, block.arms, "prediction_time"),
         Heading("Confidence"),
-        *_ranked(block.confidence, "confidence"),
+        *_ranked(block.confidence, block.arms, "confidence"),
         Heading("Demographics"),
-        *_demographics(block.demographics),
+        *_demographics(block),
         Heading("Fine print"),
         Items(_FINE_PRINT),
         Heading("Made from"),
@@ -70,35 +69,39 @@ def report_parts(
 
 
 def _answers(block: PaperBlock) -> tuple[str, ...]:
-    treatment, reference = (block.correct.arms[arm] for arm in CONDITIONS)
-    test = block.correct.test
-    more = _verdict(test.p, treatment.share - reference.share, "more", "fewer")
+    treatment, reference = block.correct.arms.values()
+    arms, test = block.arms, block.correct.test
+    more = _verdict(arms, test.p, treatment.share - reference.share, "more", "fewer")
     chi2 = wording.chi_square_statistic(test)
     return (
-        f"Correct guesses: {wording.percent(treatment.share)} with {LABELS[TREATMENT]}, "
-        f"{wording.percent(reference.share)} with {LABELS[REFERENCE]}; {more}, "
+        f"Correct guesses: {wording.percent(treatment.share)} with {arms.treatment.label}, "
+        f"{wording.percent(reference.share)} with {arms.reference.label}; {more}, "
         f"{chi2}, {wording.format_p(test.p)}",
-        _answer("Mean time of prediction", block.prediction_time, " s", "longer", "shorter"),
-        _answer("Mean confidence", block.confidence, "", "higher", "lower"),
+        _answer("Mean time of prediction", block.prediction_time, arms, " s", "longer", "shorter"),
+        _answer("Mean confidence", block.confidence, arms, "", "higher", "lower"),
     )
 
 
-def _answer(name: str, ranked: Ranked, unit: str, larger: str, smaller: str) -> str:
-    means = ", ".join(f"{ranked.arms[arm].mean:.2f}{unit} with {LABELS[arm]}" for arm in CONDITIONS)
+def _answer(name: str, ranked: Ranked, arms: Arms, unit: str, larger: str, smaller: str) -> str:
+    means = ", ".join(
+        f"{ranked.arms[arm].mean:.2f}{unit} with {label}" for arm, label in arms.labels.items()
+    )
     test = ranked.test
-    verdict = _verdict(test.p, test.rank_biserial, f"by ranks {larger}", f"by ranks {smaller}")
+    verdict = _verdict(
+        arms, test.p, test.rank_biserial, f"by ranks {larger}", f"by ranks {smaller}"
+    )
     u = wording.format_u(test.u_smaller)
     return f"{name}: {means}; {verdict}, U = {u}, {wording.format_p(test.p)}"
 
 
-def _verdict(p: float, difference: float, larger: str, smaller: str) -> str:
+def _verdict(arms: Arms, p: float, difference: float, larger: str, smaller: str) -> str:
     if p >= wording.ALPHA:
         return f"no difference shown at alpha = {wording.without_zero(wording.ALPHA, 2)}"
-    return f"{larger if difference > 0 else smaller} with {LABELS[TREATMENT]}"
+    return f"{larger if difference > 0 else smaller} with {arms.treatment.label}"
 
 
 def _sample(block: PaperBlock) -> list[Part]:
-    arms = [block.sample.arms[arm] for arm in CONDITIONS]
+    arms = list(block.sample.arms.values())
 
     def row(name: str, values: list[int]) -> tuple[str, ...]:
         return (name, *map(str, values), str(sum(values)))
@@ -112,7 +115,7 @@ def _sample(block: PaperBlock) -> list[Part]:
     if without:
         rows.append(row("dealt a place, no trial answered", without))
     return [
-        Grid(("", *_LABELS, "both"), tuple(rows)),
+        Grid(("", *block.arms.labels.values(), "both"), tuple(rows)),
         Paragraph(
             f"Incomplete means: {block.sample.incomplete_means}. What these participants answered "
             "is analysed."
@@ -123,7 +126,7 @@ def _sample(block: PaperBlock) -> list[Part]:
 def _correct(block: PaperBlock) -> list[Part]:
     rows = tuple(
         (
-            LABELS[arm],
+            block.arms.labels[arm],
             str(share.count),
             str(share.n - share.count),
             str(share.n),
@@ -139,11 +142,12 @@ def _correct(block: PaperBlock) -> list[Part]:
     ]
 
 
-def _ranked(ranked: Ranked, figure: str) -> list[Part]:
-    rows = tuple((LABELS[arm], *_mean_cells(each)) for arm, each in ranked.arms.items())
+def _ranked(ranked: Ranked, arms: Arms, figure: str) -> list[Part]:
+    rows = tuple((arms.labels[arm], *_mean_cells(each)) for arm, each in ranked.arms.items())
     unit = next(iter(ranked.arms.values())).unit
     normality = (
-        f"{LABELS[arm]}, {wording.normality_apa(each)}" for arm, each in ranked.normality.items()
+        f"{arms.labels[arm]}, {wording.normality_apa(each)}"
+        for arm, each in ranked.normality.items()
     )
     return [
         Grid(("", "n", f"mean, {unit}", "95 % interval", "SD", "median"), rows),
@@ -159,18 +163,19 @@ def _mean_cells(each: Mean) -> tuple[str, ...]:
     return str(each.n), f"{each.mean:.2f}", interval, sd, f"{each.median:.2f}"
 
 
-def _demographics(found: Demographics | None) -> list[Part]:
+def _demographics(block: PaperBlock) -> list[Part]:
+    found, groups = block.demographics, (*block.arms.names, OVERALL)
     if found is None:
         return [Paragraph("A single table of trials has none; an export folder does.")]
-    rows = [("participants", *(str(found.n[group]) for group in GROUPS))]
-    rows.append(("age, years: mean (SD), range, n", *(_age(found.age[group]) for group in GROUPS)))
+    rows = [("participants", *(str(found.n[group]) for group in groups))]
+    rows.append(("age, years: mean (SD), range, n", *(_age(found.age[group]) for group in groups)))
     for question, answers in found.answers.items():
         name = question.replace("_", " ")
         for answer in answers:
-            counts = (_counted(answer.counts[group], found.n[group]) for group in GROUPS)
+            counts = (_counted(answer.counts[group], found.n[group]) for group in groups)
             rows.append((f"{name}: {answer.answer}", *counts))
     return [
-        Grid(("", *_LABELS, "both"), tuple(rows)),
+        Grid(("", *block.arms.labels.values(), "both"), tuple(rows)),
         Paragraph("Participants with at least one analysed trial; percentages are of them."),
     ]
 

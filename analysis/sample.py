@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from .contract import COMPLETED, CONDITIONS
-from .reader import Dataset
+from .completion import completion
+from .dataset import Dataset
 
 
 @dataclass(frozen=True)
@@ -35,21 +35,9 @@ class Sample:
 
 
 def sample(data: Dataset) -> Sample:
-    """Count participants and trials per condition.
-
-    Incomplete is, by the participants table, whoever has not completed the study; without that
-    table, whoever has fewer trials than the participant with most.
-    """
-    each = data.trials.group_by("participant", "condition").len("trials")
-    most = int(each["trials"].cast(pl.Int64).to_numpy().max())
-    if data.participants is None:
-        each = each.with_columns(done=pl.col("trials") == most)
-        meaning = f"fewer than {most} trials"
-    else:
-        done = data.participants.select("participant", done=pl.col("status") == COMPLETED)
-        each = each.join(done, on="participant", how="left")
-        meaning = "study not completed"
-    return Sample({arm: _arm_size(data, each, arm) for arm in CONDITIONS}, meaning)
+    """Count participants and trials per condition."""
+    each, meaning = completion(data.trials, data.participants)
+    return Sample({arm: _arm_size(data, each, arm) for arm in data.arms.names}, meaning)
 
 
 def _arm_size(data: Dataset, each: pl.DataFrame, arm: str) -> ArmSize:

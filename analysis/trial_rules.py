@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import polars as pl
 
-from .derive import correct_guesses, prediction_times_s, scores, too_fast_stops
+from . import derive
 from .validation import Problem, broken
 
 TIME_TOLERANCE_S = 0.001
@@ -108,10 +108,9 @@ def _decision_after_end(trials: pl.DataFrame) -> list[Problem]:
 
 
 def _contradicted_guess(trials: pl.DataFrame) -> list[Problem]:
-    derived = correct_guesses(trials["guess"], trials["goal"])
     return broken(
-        trials.with_columns(derived.alias("derived")),
-        pl.col("correct") != pl.col("derived"),
+        trials,
+        pl.col("correct") != derive.CORRECT,
         "correct_contradicts_guess",
         "correct",
         "true if and only if guess and goal are the same",
@@ -122,15 +121,14 @@ def _contradicted_guess(trials: pl.DataFrame) -> list[Problem]:
 
 
 def _contradicted_measures(trials: pl.DataFrame) -> list[Problem]:
-    stop, length, correct = (trials[name] for name in ("stop_time_s", "length_s", "correct"))
     found: list[Problem] = []
     for name, derived, tolerance in (
-        ("prediction_time_s", prediction_times_s(stop, length, correct), TIME_TOLERANCE_S),
-        ("score", scores(correct, stop, length), SCORE_TOLERANCE),
+        ("prediction_time_s", derive.PREDICTION_TIME_S, TIME_TOLERANCE_S),
+        ("score", derive.SCORE, SCORE_TOLERANCE),
     ):
         if name in trials.columns:
             found += broken(
-                trials.with_columns(derived.alias("derived")),
+                trials.with_columns(derived=derived),
                 (pl.col(name) - pl.col("derived")).abs() > tolerance,
                 f"{name}_contradicts_definition",
                 name,
@@ -142,10 +140,9 @@ def _contradicted_measures(trials: pl.DataFrame) -> list[Problem]:
 
 
 def _contradicted_haste(trials: pl.DataFrame) -> list[Problem]:
-    derived = too_fast_stops(trials["stop_time_s"], trials["first_decision_s"])
     return broken(
-        trials.with_columns(derived.alias("derived")),
-        pl.col("too_fast") != pl.col("derived"),
+        trials,
+        pl.col("too_fast") != derive.TOO_FAST,
         "too_fast_contradicts_definition",
         "too_fast",
         "true if and only if stop_time_s is less than first_decision_s",

@@ -11,10 +11,10 @@ from analysis import (
     AnalysisError,
     EmptyArmError,
     TableError,
+    derive,
     read_dataset,
     write_table,
 )
-from analysis.derive import correct_guesses, prediction_times_s, scores
 from analysis.trial_rules import trial_problems
 from analysis.validation import ROW
 from tests.analysis.rows import (
@@ -311,24 +311,10 @@ def test_golden_penalised_time(golden):
             "length_s": pl.Series(given["video_length"], dtype=pl.Float64),
         }
     )
-    times = prediction_times_s(trials["stop_time_s"], trials["length_s"], trials["correct"])
+    times = trials.select(derive.PREDICTION_TIME_S).to_series()
     assert times.to_list() == case["expected"]["time"]
     found = [{"row": row, "code": p.code} for p in trial_problems(trials) for row in p.rows]
     assert found == case["expected"]["row_errors"]
-
-
-def test_whole_columns_give_what_the_definitions_give_row_by_row():
-    guess, goal = pl.Series(["A", "B", None]), pl.Series(["A", "A", "A"])
-    right = correct_guesses(guess, goal)
-    assert right.to_list() == [True, False, None]
-    points = scores(right, pl.Series([14.0, 14.0, 14.0]), pl.Series([21.0, 21.0, 21.0]))
-    assert points.to_list() == [pytest.approx(5.0), 0.0, None]
-
-
-def test_an_animation_without_length_counts_for_nothing():
-    nothing = pl.Series([0.0])
-    assert prediction_times_s(nothing, nothing, pl.Series([True])).to_list() == [None]
-    assert scores(pl.Series([True]), nothing, nothing).to_list() == [None]
 
 
 def test_a_participant_without_trials_is_no_problem(tmp_path):

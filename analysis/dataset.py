@@ -1,0 +1,78 @@
+"""Checked data, ready to be analysed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from .arms import Arms
+from .contract import TRIALS
+from .exclusions import Excluded
+from .flow import Flow
+from .plan import Plan
+from .statistics.outcome import Clusters, Outcome
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that was read: its name, SHA-256 in hexadecimal, and number of rows."""
+
+    file: str
+    sha256: str
+    rows: int
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Checked data of the plan's two conditions, without whom its exclusions took.
+
+    `trials` has the columns of the contract that its file has, and always participant, condition,
+    scenario, trial_index, stop_time_s, length_s, correct, prediction_time_s and confidence, the
+    last five null where missing; and `treated`, whether the trial is of the treatment.
+    `participants` is None without such a table.
+
+    `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
+    `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
+    pairs the file's column names with those of the contract; `confidence_scale` has the lowest and
+    the highest rating.
+    """
+
+    plan: Plan
+    trials: pl.DataFrame
+    participants: pl.DataFrame | None
+    sources: tuple[Source, ...]
+    simulated: int
+    preview: int
+    with_simulated: bool
+    other_conditions: dict[str, int]
+    excluded: tuple[Excluded, ...]
+    flow: Flow
+    renamed: tuple[tuple[str, str], ...]
+    confidence_scale: tuple[float, float]
+
+    @property
+    def arms(self) -> Arms:
+        """The two conditions that are compared."""
+        return self.plan.arms
+
+
+def outcome(data: Dataset, measure: str) -> Outcome:
+    """Return a column of the trials, such as those of `Plan.primary`, as methods take it.
+
+    True counts 1 and false 0; clusters are numbered in the order of their names.
+    """
+    trials = data.trials
+    return Outcome(
+        name=measure,
+        unit=TRIALS.column(measure).unit or "share",
+        y=trials[measure].cast(pl.Float64).to_numpy().astype(np.float64),
+        treated=trials["treated"].to_numpy(),
+        participant=_numbered(trials["participant"]),
+        scenario=_numbered(trials["scenario"]),
+    )
+
+
+def _numbered(names: pl.Series) -> Clusters:
+    return (names.rank("dense") - 1).cast(pl.Int64).to_numpy()
