@@ -2,4 +2,12 @@
 
 CONSTANT_OUTCOME = "constant_outcome"
 DEGENERATE_MARGIN = "degenerate_margin"
+FEW_CLUSTERS = "few_clusters"
+NOT_CONVERGED = "not_converged"
+NO_VARIATION = "no_variation"
+ONE_PARTICIPANT = "one_participant"
+ONE_SCENARIO = "one_scenario"
+SCENARIOS_NOT_SHARED = "scenarios_not_shared"
+SEPARATION = "separation"
 TOO_FEW_VALUES = "too_few_values"
+ZERO_CELL = "zero_cell"
