@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from .command_line import one_line_errors, status
+from .reconstruct_cli import reconstruct
 
 commands = typer.Typer()
 """Without a callback, so that another Typer can take its commands in without a group's name."""
@@ -50,3 +51,6 @@ def analyse(
         typer.echo("Add --to DIR for report.md, report.json and the figures.", err=True)
     else:
         typer.echo(f"Written: {to / 'report.md'}, report.json, figures/", err=True)
+
+
+commands.command()(reconstruct)

@@ -46,6 +46,7 @@ def test_the_commands_of_all_three_packages_are_one_command():
         "compare",
         "teach",
         "analyse",
+        "reconstruct",
     }
 
 
