@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from .as_in_paper import PaperBlock, as_in_paper, values_of
-from .contract import CONDITIONS
+from .dataset import Dataset
 from .document import Part, markdown
 from .files import folder_for_writing
 from .notices import Notice, notices
-from .reader import Dataset, read_dataset
+from .reader import read_dataset
 from .report import report_parts
 
 SCHEMA_VERSION = 1
@@ -69,7 +69,7 @@ def report_json(results: Results) -> dict[str, Any]:
 
 
 def write_report(results: Results, folder: Path, tell: Callable[[str], None]) -> None:
-    """Write report.json, report.md and figures/*.svg, *.png into `folder`.
+    """Write report.json, report.md and figures/*.svg, *.png, *.csv into `folder`.
 
     All are made in a temporary folder beside it first, so that a failure leaves `folder` as it
     was; other files in `folder` stay. `tell` hears what is being done.
@@ -95,10 +95,17 @@ def _draw(results: Results, folder: Path) -> None:
     from . import figures
 
     folder.mkdir()
-    confidence = [values_of(results.data, arm, "confidence") for arm in CONDITIONS]
-    figures.save(figures.figure_correct(results.block), folder, "correct")
-    figures.save(figures.figure_prediction_time(results.block), folder, "prediction_time")
-    figures.save(figures.figure_confidence(confidence), folder, "confidence")
+    block, arms = results.block, results.data.arms
+    labels = arms.treatment.label, arms.reference.label
+    shares = list(block.correct.arms.values())
+    times = list(block.prediction_time.arms.values())
+    confidence = [values_of(results.data, arm, "confidence") for arm in arms.names]
+    for name, drawn in {
+        "correct": figures.figure_correct(shares, labels),
+        "prediction_time": figures.figure_prediction_time(times, labels),
+        "confidence": figures.figure_confidence(confidence, labels),
+    }.items():
+        figures.write_figure(drawn, folder, name)
 
 
 def _packages() -> dict[str, str]:

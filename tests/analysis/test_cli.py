@@ -44,7 +44,7 @@ def test_it_writes_the_report_and_the_figures(export, tmp_path):
     assert result.exit_code == 0
     names = {path.name for path in (tmp_path / "new" / "report").rglob("*.*")}
     figures = {"correct", "prediction_time", "confidence"}
-    drawn = {f"{figure}.{suffix}" for figure in figures for suffix in ("svg", "png")}
+    drawn = {f"{figure}.{suffix}" for figure in figures for suffix in ("svg", "png", "csv")}
     assert names == {"report.json", "report.md", *drawn}
     assert list((tmp_path / "new").iterdir()) == [tmp_path / "new" / "report"]
 

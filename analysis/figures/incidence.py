@@ -1,0 +1,104 @@
+"""How many trials have ended by each time, by a correct and by a wrong stop."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import polars as pl
+
+from ..statistics.survival import ArmIncidence, Curve, Incidence
+from .drawn import Drawn
+from .style import (
+    COLOURS,
+    LINES,
+    MARKERS,
+    Labels,
+    capital,
+    counts_below,
+    legend_above,
+    panel,
+    wrapped,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..statistics.outcome import Numbers
+
+_TIMES = 5
+
+
+def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
+    """Show the cumulative incidence of correct stops per arm with 95 % bands, of wrong ones dotted.
+
+    Below the axis stand the trials at risk: not ended before. An arm of one participant has no
+    band.
+    """
+    time_s, arms = incidence.time_s, (incidence.treatment, incidence.reference)
+    marked = np.searchsorted(time_s, np.linspace(0, time_s[-1], _TIMES))
+    note = (
+        "Share of trials stopped by then, of all; band: 95 % interval at each time by itself, "
+        "participants clustered. Trials watched to the end count as never stopped."
+    )
+    with panel(5.0, note) as (figure, axes):
+        for arm, (curves, label) in enumerate(zip(arms, labels, strict=True)):
+            _band(axes, time_s, curves.correct, COLOURS[arm])
+            name = wrapped(capital(label), 44, lines=1)
+            for curve, line, stops in (
+                (curves.correct, LINES[arm], "correct stops"),
+                (curves.wrong, ":", "wrong stops"),
+            ):
+                axes.step(
+                    time_s,
+                    100 * curve.share,
+                    line,
+                    where="post",
+                    color=COLOURS[arm],
+                    label=f"{name}: {stops}",
+                    marker=MARKERS[arm],
+                    markevery=marked.tolist(),
+                    markersize=5,
+                )
+        axes.set(xlim=(0, float(time_s[-1]) or 1), ylim=(0, 100))
+        axes.set(xlabel="Motion seen, s", ylabel="Trials stopped, %")
+        at_risk = (curves.at_risk[marked] for curves in arms)
+        counts_below(axes, "Trials not stopped before", time_s[marked], *at_risk)
+        legend_above(figure, axes)
+    return Drawn(figure, _data(incidence, labels), _alt(arms, labels, float(time_s[-1])))
+
+
+def _band(axes: Axes, time_s: Numbers, curve: Curve, colour: str) -> None:
+    if curve.low is None or curve.high is None:
+        return
+    low, high = 100 * curve.low, 100 * curve.high
+    axes.fill_between(time_s, low, high, step="post", color=colour, alpha=0.22, linewidth=0)
+
+
+def _data(incidence: Incidence, labels: Labels) -> pl.DataFrame:
+    arms = (incidence.treatment, incidence.reference)
+    return pl.concat(
+        pl.DataFrame(
+            {
+                "arm": [label] * len(incidence.time_s),
+                "stop": [stop] * len(incidence.time_s),
+                "time_s": incidence.time_s,
+                "percent": 100 * curve.share,
+                "low_percent": None if curve.low is None else 100 * curve.low,
+                "high_percent": None if curve.high is None else 100 * curve.high,
+                "at_risk": curves.at_risk,
+            },
+            schema_overrides={"low_percent": pl.Float64, "high_percent": pl.Float64},
+        )
+        for label, curves in zip(labels, arms, strict=True)
+        for stop, curve in (("correct", curves.correct), ("wrong", curves.wrong))
+    )
+
+
+def _alt(arms: tuple[ArmIncidence, ArmIncidence], labels: Labels, end_s: float) -> str:
+    seen = "; ".join(
+        f"{label} {100 * curves.correct.share[-1]:.1f} % correct and "
+        f"{100 * curves.wrong.share[-1]:.1f} % wrong stops, n = {curves.n:,} trials"
+        for label, curves in zip(labels, arms, strict=True)
+    )
+    return f"Curves of the share of trials stopped by each time; by {end_s:.1f} s: {seen}."
