@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from analysis.statistics.result import TestResult
+
 
 def holds(case: Mapping[str, Any], found: Mapping[str, Any]) -> None:
     """Compare numbers with the case's, within its tolerance; a failure tells the source."""
@@ -21,3 +23,9 @@ def holds(case: Mapping[str, Any], found: Mapping[str, Any]) -> None:
 def closely(case: Mapping[str, Any]) -> Mapping[str, Any]:
     """The case without its absolute tolerance, which says nothing of variances and small p's."""
     return {**case, "tol": 0}
+
+
+def defined(result: TestResult) -> Any:
+    """The result, whose estimate, interval and test are all there."""
+    assert None not in (result.estimate, result.low, result.high, result.statistic, result.p)
+    return result
