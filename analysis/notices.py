@@ -6,13 +6,8 @@ from dataclasses import dataclass
 
 from .as_in_paper import PaperBlock
 from .dataset import Dataset
-from .statistics.codes import CONSTANT_OUTCOME, DEGENERATE_MARGIN, TOO_FEW_VALUES
+from .warning_texts import WARNINGS
 
-_TEXTS = {
-    DEGENERATE_MARGIN: "all guesses were alike, so chi-square is not defined and p is set to 1",
-    CONSTANT_OUTCOME: "all values are equal, so the test is not defined",
-    TOO_FEW_VALUES: "fewer than three values, so the test is not defined",
-}
 _FEW_EXPECTED = 5
 
 
@@ -77,7 +72,7 @@ def _about_tests(block: PaperBlock) -> list[Notice]:
 
 
 def _of_test(code: str, about: str) -> Notice:
-    return Notice(code, about, f"{about[0].upper()}{about[1:]}: {_TEXTS[code]}.")
+    return Notice(code, about, f"{about[0].upper()}{about[1:]}: {WARNINGS[code]}.")
 
 
 def _about_gaps(data: Dataset, block: PaperBlock) -> list[Notice]:

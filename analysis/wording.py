@@ -9,8 +9,8 @@ from .statistics.two_by_two import ChiSquare
 ALPHA = 0.05
 
 
-def format_p(p: float | None, relation: str = "=") -> str:
-    """Write a p value with three decimals, with more where rounding would carry it over .05.
+def format_p(p: float | None, relation: str = "=", alpha: float = ALPHA) -> str:
+    """Write a p value with three decimals, with more where rounding would carry it over `alpha`.
 
     Below .001 and above .999 it is a bound, None is NA; `relation` is "<=" or ">=" where p
     itself is one.
@@ -22,7 +22,7 @@ def format_p(p: float | None, relation: str = "=") -> str:
     if p >= 0.9995:
         return "p > .999"
     decimals = 3
-    while p < ALPHA and round(p, decimals) >= ALPHA:
+    while (p < alpha) != (round(p, decimals) < alpha):
         decimals += 1
     return f"p {relation} {without_zero(p, decimals)}"
 

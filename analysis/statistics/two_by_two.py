@@ -168,7 +168,7 @@ def risk_difference(table: TwoByTwo) -> TestResult:
         low=float(low),
         high=float(high),
         null=0.0,
-        unit="proportion",
+        unit="share",
         symbol="",
         statistic=None,
         df=None,

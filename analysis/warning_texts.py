@@ -1,0 +1,22 @@
+"""What the warnings of results mean to a reader: each completes a sentence that names the test."""
+
+from .statistics import codes
+
+WARNINGS = {
+    codes.CONSTANT_OUTCOME: "all values are equal, so the test is not defined",
+    codes.DEGENERATE_MARGIN: "all guesses were alike, so the arms cannot be told apart",
+    codes.FEW_CLUSTERS: "fewer than 10 participants in an arm, or scenarios; interval and p are "
+    "rough",
+    codes.NOT_CONVERGED: "the fit did not converge, so nothing is estimated",
+    codes.NO_VARIATION: "participants do not differ, so there is no standard error",
+    codes.ONE_PARTICIPANT: "an arm has a single participant, which does not tell how participants "
+    "differ",
+    codes.ONE_SCENARIO: "all trials are of one scenario, which does not tell how scenarios differ",
+    codes.SCENARIOS_NOT_SHARED: "some scenarios were seen in one arm only, where they cannot be "
+    "told from the condition",
+    codes.SEPARATION: "an arm shows one kind of answer only, so the ratio is 0 or infinite",
+    codes.SINGLE_TRIALS: "participants have one trial each, so nothing is known of their likeness",
+    codes.TOO_FEW_VALUES: "fewer than three values, so the test is not defined",
+    codes.ZERO_CELL: "a cell of the 2x2 table is empty",
+}
+"""By code."""
