@@ -13,8 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .codes import NO_VARIATION, ONE_PARTICIPANT, SEPARATION
+from .codes import FEW_CLUSTERS, NO_VARIATION, ONE_PARTICIPANT, SEPARATION
 from .estimates import LEVEL
+from .inference import FEW
 from .outcome import Numbers
 from .result import TestResult
 from .survival import CORRECT, Stops
@@ -80,20 +81,21 @@ def clustered_cox(stops: Stops) -> CoxResult:
     terms = _terms(stops, correct)
     of_treated = int((correct & stops.treated).sum())
     if of_treated in (int((terms.reference == 0).sum()), int((terms.treated > 0).sum())):
-        return _result(stops, warning=SEPARATION)
+        return _result(stops, warnings=(SEPARATION,))
     estimate = float(optimize.brentq(lambda at: of_treated - terms.mean(at).sum(), -_REACH, _REACH))
     mean = terms.mean(estimate)
     information = float((mean * (1 - mean)).sum())
     naive_se = information**-0.5
     if 1 in stops.participants_per_arm:
-        return _result(stops, estimate, naive_se, warning=ONE_PARTICIPANT)
+        return _result(stops, estimate, naive_se, warnings=(ONE_PARTICIPANT,))
     of_participant = np.bincount(
         stops.participant, _score_residuals(stops, correct, terms, estimate)
     )
     se = float(np.sqrt(of_participant @ of_participant)) / information
     if se < 1e-9 * naive_se:
-        return _result(stops, estimate, naive_se, warning=NO_VARIATION)
-    return _result(stops, estimate, naive_se, se)
+        return _result(stops, estimate, naive_se, warnings=(NO_VARIATION,))
+    few = (FEW_CLUSTERS,) if min(stops.participants_per_arm) < FEW else ()
+    return _result(stops, estimate, naive_se, se, warnings=few)
 
 
 def _terms(stops: Stops, correct: NDArray[np.bool_]) -> _Terms:
@@ -137,7 +139,7 @@ def _result(
     naive_se: float | None = None,
     se: float | None = None,
     *,
-    warning: str | None = None,
+    warnings: tuple[str, ...] = (),
 ) -> CoxResult:
     """Return what is known of the log hazard ratio."""
     from scipy import stats
@@ -166,7 +168,7 @@ def _result(
         "standard error clustered by participant",
         source="as R survival::coxph(cluster = participant); Cox (1972), Lin and Wei (1989)",
         se=se,
-        warnings=() if warning is None else (warning,),
+        warnings=warnings,
         hazard_ratio=ratio,
         hazard_ratio_low=ratio_low,
         hazard_ratio_high=ratio_high,

@@ -16,7 +16,7 @@ and Miller (2008), Review of Economics and Statistics 90, 414-427."""
 class Inference(TypedDict):
     """The fields of a TestResult that follow from an estimate and its variance."""
 
-    estimate: float
+    estimate: float | None
     null: float
     se: float | None
     low: float | None
@@ -29,7 +29,7 @@ class Inference(TypedDict):
 
 
 def undefined(
-    estimate: float, null: float, *warnings: str, symbol: str = "t", p: float | None = None
+    estimate: float | None, null: float, *warnings: str, symbol: str = "t", p: float | None = None
 ) -> Inference:
     """Return an estimate of whose uncertainty nothing is known, and `warnings` that say why."""
     return Inference(

@@ -192,8 +192,7 @@ def _curve(trials: _Trials, cause: int, last: NDArray[np.int64]) -> Curve:
     rise = trials.survival * hazard / trials.at_risk
     incidence = np.append(0.0, np.minimum(np.cumsum(rise), 1.0))
     share = incidence[last + 1]
-    n_participants = int(trials.participant.max()) + 1
-    if n_participants == 1:
+    if trials.participant.max() == 0:
         return Curve(share, None, None, None)
     se = _clustered_se(trials, cause, rise, incidence, last)
     low, high = _log_log_interval(share, se)
@@ -206,9 +205,9 @@ def _clustered_se(
     """Return the standard error at each time of the grid, clustered by participant.
 
     The influence of a trial ended at u on the incidence F(t), u <= t, is a line in F(t), of which
-    `fixed` and `slope` are summed; all trials at risk beyond t have the same, `pending`.
+    `fixed` and `slope` are summed; trials still at risk after t all have the same, `pending`.
     """
-    at, ended = trials.at, trials.ending != CENSORED
+    at = trials.at
     # where nobody is left the curve ends, and what would be divided by 0 counts for nothing
     per_left = np.divide(1.0, trials.left, out=np.zeros_like(trials.left), where=trials.left > 0)
     spread = (1 - trials.left / trials.at_risk) * per_left
@@ -217,7 +216,7 @@ def _clustered_se(
         for terms in (rise / trials.at_risk, spread, spread * incidence[1:])
     )
     own = np.where(trials.ending == cause, (trials.survival / trials.at_risk)[at], 0.0)
-    gone = np.where(ended, per_left[at], 0.0)
+    gone = np.where(trials.ending != CENSORED, per_left[at], 0.0)
     fixed = own - (a + c)[at + 1] + gone * incidence[at + 1]
     slope = b[at + 1] - gone
 
@@ -240,11 +239,12 @@ def _clustered_se(
 
 
 def _log_log_interval(share: Numbers, se: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the 95 % interval of shares; of 0 and of 1 it is the share itself."""
+    """Return the 95 % interval of shares; of 0 and of 1 (but for rounding) it is the share."""
     from scipy import stats
 
-    inside = (share > 0) & (share < 1)
+    inside = (share > 0) & (share < 1 - 1e-12)
     log = np.log(np.where(inside, share, 0.5))
-    width = float(stats.norm.ppf((1 + LEVEL) / 2)) * se / np.abs(np.where(inside, share, 0.5) * log)
-    low, high = (np.where(inside, np.exp(log * np.exp(sign * width)), share) for sign in (1, -1))
+    z = float(stats.norm.ppf((1 + LEVEL) / 2))
+    factor = np.exp(z * se / np.where(inside, np.abs(share * log), 1.0))
+    low, high = (np.where(inside, np.exp(log * to), share) for to in (factor, 1 / factor))
     return low, high
