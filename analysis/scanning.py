@@ -16,7 +16,7 @@ from .validation import ROW, Problem
 FORMATS = (".csv", ".parquet", ".jsonl")
 """In the order in which a reader looks for them: CSV is the one people open and mend."""
 
-_BAD = " bad"
+_FILLED = " filled"
 _LARGEST_EXACT = 2.0**53
 _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
@@ -67,14 +67,14 @@ def typed(
         found = raw.collect_schema()
         for column in columns:
             filled, value = _conversion(column, found[column.name])
-            bad = filled & value.is_null()
-            asked += [value.alias(column.name), bad.alias(column.name + _BAD)]
+            asked += [value.alias(column.name), filled.alias(column.name + _FILLED)]
         frame = raw.select(pl.col(ROW).cast(pl.Int64), *asked).collect(engine="streaming")
     except pl.exceptions.PolarsError as error:
         raise _unreadable(path, error) from error
     problems = []
     for column in columns:
-        rows = frame.filter(pl.col(column.name + _BAD))[ROW].to_list()
+        bad = frame[column.name + _FILLED] & frame[column.name].is_null()
+        rows = frame[ROW].filter(bad).to_list()
         if rows:
             cell = raw.filter(pl.col(ROW) == rows[0]).select(column.name).collect().item()
             problems.append(Problem("wrong_type", column.name, column.expected, rows, repr(cell)))
@@ -87,16 +87,18 @@ def _conversion(column: Column, found: pl.DataType) -> tuple[pl.Expr, pl.Expr]:
     if found == column.dtype and column.kind is not Kind.NUMBER:
         value = cell.replace("", None) if found == pl.String else cell
         return value.is_not_null(), value
+    if found.is_numeric() and column.kind is Kind.NUMBER:
+        return cell.is_not_null(), _finite(cell.cast(pl.Float64))
     text = cell.cast(pl.String, strict=False)
     if column.kind in (Kind.TEXT, Kind.JSON):
         return text.is_not_null(), text.replace("", None)
     text = text.str.strip_chars()
     # R writes NA for a missing value; a text column keeps it, it may be the code of Namibia
-    text = pl.when(text.is_in(["", "NA"])).then(None).otherwise(text)
+    filled = text.is_not_null() & ~text.is_in(["", "NA"])
     number = text.cast(pl.Float64, strict=False)
     whole = (number == number.floor()) & (number.abs() < _LARGEST_EXACT)
     values = {
-        Kind.NUMBER: pl.when(number.is_finite()).then(number),
+        Kind.NUMBER: _finite(number),
         Kind.INTEGER: text.cast(pl.Int64, strict=False).fill_null(
             pl.when(whole).then(number).cast(pl.Int64, strict=False)
         ),
@@ -105,7 +107,11 @@ def _conversion(column: Column, found: pl.DataType) -> tuple[pl.Expr, pl.Expr]:
         ),
         Kind.TIME: text.str.to_datetime("%+", time_unit="us", time_zone="UTC", strict=False),
     }
-    return text.is_not_null(), values[column.kind]
+    return filled, values[column.kind]
+
+
+def _finite(number: pl.Expr) -> pl.Expr:
+    return pl.when(number.is_finite()).then(number)
 
 
 def _csv_header(path: Path) -> list[str]:
