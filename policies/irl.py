@@ -2,7 +2,7 @@
 
 Both predictors take the actions a seen in states x for draws from softmax over a of eta Q*_r(x, a)
 under a state reward r (paper, 2.2). `bayes` weighs the maze's candidate goals by it exactly;
-`gradient` climbs to the reward r* that explains the actions best, whatever it is, and names the
+`gradient` climbs to the mixture r* of their rewards that explains the actions best, and names the
 candidate whose reward is nearest to r*.
 """
 
@@ -61,7 +61,7 @@ class Learner:
         """How well goal n fits the first k + 1 examples, shape (K, N): `guesses` takes the best.
 
         `bayes`: log P(a_0..a_k | x_0..x_k, r_n), the log posterior but for a constant;
-        `gradient`: cosine of the learned reward and r_n, 0 where nothing was learned.
+        `gradient`: cosine of the learned reward and r_n, 0 where nothing is rewarded.
         """
         self._check(x, a)
         if self.predictor == "bayes":
@@ -71,11 +71,17 @@ class Learner:
         return np.array([self._cosines(r) for r in learned])
 
     def learn(self, x: Indices, a: Indices) -> "LearnedReward":
-        """Gradient ascent from r = 0 on the log likelihood of the examples, r in [0, 1]."""
+        """Gradient ascent on the log likelihood over r = sum_n w_n r_n, each w_n in [0, 1].
+
+        It begins at the mean of the candidates' rewards. Not every state's reward is free: then
+        each action would be explained best by a reward next door, whatever the goal (Ng & Russell,
+        2000), and most of what the examples tell would be lost.
+        """
         from policies.irl_kernels import ascend
 
         self._check(x, a)
-        return LearnedReward(*ascend(x, a, self.maze.successors, self.gamma, self.eta))
+        goals = np.array(list(self.maze.goals.values()))
+        return LearnedReward(*ascend(goals, x, a, self.maze.successors, self.gamma, self.eta))
 
     def log_likelihood(self, r: Array, x: Indices, a: Indices) -> tuple[float, Array]:
         """sum_t log P(a_t | x_t, r) and its gradient in r, shape (S,).

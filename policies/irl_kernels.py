@@ -23,29 +23,38 @@ TIE = 1e-9
 FIRST_STEP, LAST_STEP = 0.5, 1e-3
 """Largest change of a cell's reward in one step of the ascent, of rewards between 0 and 1."""
 TRIALS = 40
+ENOUGH = 1e-3
+"""A gain in log P by which the ascent ends."""
 
 
 @njit(cache=True)
-def ascend(x: Indices, a: Indices, after: Indices, gamma: float, eta: float) -> tuple[Array, float]:
-    """The state reward in [0, 1] that explains actions `a` in states `x`, and its log P.
+def ascend(
+    goals: Indices, x: Indices, a: Indices, after: Indices, gamma: float, eta: float
+) -> tuple[Array, float]:
+    """The state reward that explains actions `a` in states `x` best, and log P under it.
 
-    Projected gradient ascent from r = 0: a step that does not raise log P is halved.
+    It is in [0, 1] at `goals` and 0 elsewhere. Projected gradient ascent from the same reward at
+    all goals: a step that does not raise log P is halved, one that hardly does is the last.
     """
-    S, A = after.shape
+    S = len(after)
     r, v, y = np.zeros(S), np.zeros(S), np.zeros(S)
-    best = -len(x) * np.log(A)
-    uphill = gradient(r, x, a, after, gamma, eta, v, y)
+    r[goals] = 1 / len(goals)
+    best = log_likelihood(r, x, a, after, gamma, eta, v)
+    uphill = gradient(r, x, a, after, gamma, eta, v, y)[goals]
     step = FIRST_STEP
     for _ in range(TRIALS):
         steepest = np.abs(uphill).max()
         if steepest == 0 or step < LAST_STEP:
             break
-        tried = np.minimum(np.maximum(r + step / steepest * uphill, 0), 1)
-        v_tried = v.copy()
+        tried, v_tried = r.copy(), v.copy()
+        tried[goals] = np.minimum(np.maximum(r[goals] + step / steepest * uphill, 0), 1)
         found = log_likelihood(tried, x, a, after, gamma, eta, v_tried)
         if found > best:
+            gain = found - best
             r, v, best = tried, v_tried, found
-            uphill = gradient(r, x, a, after, gamma, eta, v, y)
+            if gain < ENOUGH:
+                break
+            uphill = gradient(r, x, a, after, gamma, eta, v, y)[goals]
         else:
             step /= 2
     return r, best

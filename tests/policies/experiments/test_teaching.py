@@ -249,7 +249,7 @@ class TestWhoIsAhead:
         # Each further example takes the ascent longer; 5 tell the same as 10.
         monkeypatch.setattr(teaching, "EXAMPLES", 5)
         monkeypatch.setattr("policies.experiments.teaching_tables.EXAMPLES", 5)
-        design = TeachingDesign("samples", units=30, predictor="gradient", seed=1)
+        design = TeachingDesign("samples", units=80, predictor="gradient", seed=1)
         tables = make_teaching_tables(run_teaching(design, fresh_mazes(11), tmp_path))
         ahead = tables.differences.filter(tables.differences["k"] >= 2)
         assert len(ahead) == 4
