@@ -8,8 +8,8 @@ import numpy as np
 
 from .outcome import Clusters, Numbers, Outcome
 
-_ROUNDING = 1e-20
-"""Squared cluster sums below this share of the squared values are zeros that rounding blurred."""
+ROUNDING = 1e-14
+"""Variances below this share of those they are made from are zeros that rounding blurred."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,4 +73,4 @@ def cluster_variance(h: Numbers, cluster: Clusters) -> float | None:
         return None
     sums = np.bincount(cluster, h)
     squared = float(sums @ sums)
-    return squared * clusters / (clusters - 1) if squared > _ROUNDING * float(h @ h) else 0.0
+    return squared * clusters / (clusters - 1) if squared > ROUNDING * float(h @ h) else 0.0

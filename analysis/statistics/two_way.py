@@ -8,7 +8,7 @@ import numpy as np
 
 from .codes import FEW_CLUSTERS, ONE_PARTICIPANT, ONE_SCENARIO
 from .inference import FEW, Inference, student, undefined
-from .influence import Influence, cluster_count, cluster_variance
+from .influence import ROUNDING, Influence, cluster_count, cluster_variance
 from .outcome import Outcome
 from .result import TestResult
 
@@ -62,6 +62,8 @@ def two_way(data: Outcome, influence: Influence, null: float, *warnings: str) ->
         if min(fewest, scenarios) < FEW:
             warnings = (*warnings, FEW_CLUSTERS)
         variance = max(v_participant + v_scenario - v_trial, v_participant)
+        if variance < ROUNDING * v_scenario:
+            variance = 0.0
         inference = student(influence.estimate, null, variance, scenarios - 1, *warnings)
     return TwoWayInference(
         **inference,
