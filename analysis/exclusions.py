@@ -96,7 +96,7 @@ RULES = {
     "duplicate_stimuli": Rule(duplicate_stimuli, "saw a scenario more than once"),
     "failed_control_question": Rule(
         failed_control_question,
-        "needed more than {tries_above} tries for the control question",
+        "needed more tries than {tries_above} for the control question",
         {"tries_above": int},
         PARTICIPANTS.name,
     ),

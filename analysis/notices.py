@@ -2,53 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from .as_in_paper import PaperBlock
+from .data_notices import Notice, data_notices
 from .dataset import Dataset
 from .warning_texts import WARNINGS
 
 _FEW_EXPECTED = 5
 
 
-@dataclass(frozen=True)
-class Notice:
-    """A warning: a code for programs, what it is about, and a sentence for people."""
-
-    code: str
-    about: str
-    text: str
-
-
 def notices(data: Dataset, block: PaperBlock) -> list[Notice]:
     """Collect what limits the numbers, the gravest first."""
-    return (
-        _about_selection(data)
-        + _about_studies(data)
-        + _about_tests(block)
-        + _about_gaps(data, block)
-    )
-
-
-def _about_selection(data: Dataset) -> list[Notice]:
-    marked = f"{data.simulated} simulated and {data.preview} preview trials"
-    if not data.simulated and not data.preview:
-        return []
-    if data.with_simulated:
-        text = f"Not a result: {marked} are in the numbers, as asked for."
-        return [Notice("simulated_included", "trials", text)]
-    return [Notice("simulated_left_out", "trials", f"Left out: {marked}.")]
-
-
-def _about_studies(data: Dataset) -> list[Notice]:
-    """Trials recorded under different definitions of the study are not one sample."""
-    if "study_hash" not in data.trials.columns:
-        return []
-    found = data.trials["study_hash"].drop_nulls().unique().sort().to_list()
-    if len(found) < 2:
-        return []
-    text = f"Trials of {len(found)} definitions of the study are pooled: {', '.join(found)}."
-    return [Notice("several_studies", "trials", text)]
+    return data_notices(data) + _about_tests(block) + _about_gaps(data, block)
 
 
 def _about_tests(block: PaperBlock) -> list[Notice]:

@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from .as_in_paper import PaperBlock, as_in_paper, values_of
+from .data_notices import Notice
 from .dataset import Dataset
 from .document import Part, markdown
 from .files import folder_for_writing
-from .notices import Notice, notices
+from .notices import notices
 from .reader import read_dataset
 from .report import report_parts
 

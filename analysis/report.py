@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from . import wording
 from .arms import Arms
 from .as_in_paper import PaperBlock, Ranked
+from .data_notices import Notice
 from .dataset import Dataset
 from .demographics import OVERALL
 from .document import Grid, Heading, Items, Paragraph, Part, Picture
-from .notices import Notice
 from .statistics.estimates import Mean
 
 FIGURES = {
