@@ -17,6 +17,7 @@ from .outcome import Numbers, Outcome
 from .result import TestResult
 
 TIME_BINS = 10
+"""Bins of stop time, each with about as many trials."""
 
 
 @dataclass(frozen=True, kw_only=True)
