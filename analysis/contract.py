@@ -12,8 +12,6 @@ TREATMENT = "polmdp"
 REFERENCE = "optimal"
 CONDITIONS = (TREATMENT, REFERENCE)
 """The arms, treatment first: a policy that shows its goal, and one that only reaches it."""
-LABELS = {TREATMENT: "PoLMDP", REFERENCE: "optimal"}
-"""How reports and figures write the conditions."""
 
 COMPLETED = "completed"
 STATUSES = (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 import polars as pl
 
 from .arms import Arms
@@ -67,7 +66,7 @@ def outcome(data: Dataset, measure: str) -> Outcome:
     return Outcome(
         name=measure,
         unit=TRIALS.column(measure).unit or "share",
-        y=trials[measure].cast(pl.Float64).to_numpy().astype(np.float64),
+        y=trials[measure].cast(pl.Float64).to_numpy(),
         treated=trials["treated"].to_numpy(),
         participant=_numbered(trials["participant"]),
         scenario=_numbered(trials["scenario"]),
@@ -75,4 +74,5 @@ def outcome(data: Dataset, measure: str) -> Outcome:
 
 
 def _numbered(names: pl.Series) -> Clusters:
-    return (names.rank("dense") - 1).cast(pl.Int64).to_numpy()
+    in_order = pl.Enum(names.unique().sort())
+    return names.cast(in_order).to_physical().cast(pl.Int64).to_numpy()
