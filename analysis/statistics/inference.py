@@ -29,7 +29,7 @@ class Inference(TypedDict):
 
 
 def undefined(
-    estimate: float | None, null: float, *warnings: str, symbol: str = "t", p: float | None = None
+    estimate: float | None, null: float, *warnings: str, p: float | None = None
 ) -> Inference:
     """Return an estimate of whose uncertainty nothing is known, and `warnings` that say why."""
     return Inference(
@@ -38,7 +38,7 @@ def undefined(
         se=None,
         low=None,
         high=None,
-        symbol=symbol,
+        symbol="t",
         statistic=None,
         df=None,
         p=p,

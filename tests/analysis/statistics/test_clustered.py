@@ -256,6 +256,23 @@ def test_arms_that_differ_without_variation_are_not_tested(test):
     assert "no_variation" in found.warnings
 
 
+@pytest.mark.parametrize("test", TESTS)
+def test_rounding_is_not_taken_for_variation_between_participants(test):
+    alike = [0.1, 0.7, 0.3, 0.7, 0.3, 0.1], [0.2, 0.4, 0.9, 0.9, 0.2, 0.4]
+    trials = outcome([*alike[0], *alike[1]], [1] * 6 + [0] * 6, [*"aaabbbcccddd"], range(12))
+    assert (test(trials).statistic, test(trials).low) == (None, None)
+    assert "no_variation" in test(trials).warnings
+
+
+@pytest.mark.parametrize("test", TWO_WAY)
+def test_fewer_than_ten_scenarios_are_few_however_many_participants(test):
+    y = np.random.default_rng(5).normal(size=360)
+    participant = np.repeat(np.arange(40), 9)
+    for scenarios, warnings in ((9, ("few_clusters",)), (10, ())):
+        trials = outcome(y, participant < 20, participant, np.arange(360) % scenarios)
+        assert test(trials).warnings == warnings
+
+
 @pytest.mark.parametrize("test", TWO_WAY)
 def test_scenarios_of_one_arm_only_are_warned_of(test):
     trials = [4, 5, 6, 1, 2, 9], [1, 1, 1, 0, 0, 0], [*"aabccd"]
