@@ -17,6 +17,9 @@ WARNINGS = {
     codes.SEPARATION: "an arm shows one kind of answer only, so the ratio is 0 or infinite",
     codes.SINGLE_TRIALS: "participants have one trial each, so nothing is known of their likeness",
     codes.TOO_FEW_VALUES: "fewer than three values, so the test is not defined",
+    codes.TOO_MANY_CLUSTERS: "more than 500 scenarios, for which the fit would take too long",
     codes.ZERO_CELL: "a cell of the 2x2 table is empty",
+    codes.ZERO_VARIANCE: "participants or scenarios differ no more than chance lets them, so a "
+    "variance is estimated as 0",
 }
 """By code."""

@@ -1,0 +1,282 @@
+"""Crossed mixed models against frozen numbers of R, statsmodels, and their own symmetries."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate, stats
+from scipy.special import expit
+
+from analysis import EmptyArmError
+from analysis.statistics.crossed_fit import CrossedModel
+from analysis.statistics.mixed_model import crossed_logistic
+from analysis.statistics.ordinal_mixed import crossed_ordinal
+from analysis.statistics.outcome import Outcome
+from tests.analysis.statistics.cases import defined, holds
+from tests.analysis.statistics.outcomes import of_fixture
+
+
+def made(seed, *, participants=24, scenarios=12, trials=6, sds=(0.8, 0.6, 0.4), effect=0.9):
+    """Trials of both arms, as the model has it: a logistic latent value cut at 0."""
+    rng = np.random.default_rng(seed)
+    participant = np.repeat(np.arange(participants), trials)
+    treated = participant % 2 == 0
+    scenario = np.concatenate(
+        [rng.choice(scenarios, trials, replace=False) for _ in range(participants)]
+    )
+    u, v, w = (sd * rng.normal(size=2 * participants) for sd in sds)
+    eta = 0.8 + effect * treated + u[participant] + v[scenario] + w[2 * scenario + treated]
+    latent = eta + rng.logistic(size=len(eta))
+    return Outcome("correct", "share", (latent > 0).astype(float), treated, participant, scenario)
+
+
+def rated(seed):
+    """Ratings from 1 to 5 of trials with crossed effects."""
+    data = made(seed)
+    rng = np.random.default_rng(seed)
+    ability = rng.normal(size=24)[data.participant] + 0.7 * data.treated
+    y = 1.0 + np.digitize(ability + rng.logistic(size=len(ability)), [-1.5, -0.5, 0.5, 1.5])
+    return dataclasses.replace(data, name="confidence", unit="1 to 7", y=y)
+
+
+@pytest.mark.parametrize(
+    ("case_id", "interaction"), [("glmm_crossed_fixture", False), ("glmm_crossed_x_fixture", True)]
+)
+def test_golden_logistic(golden, paper_fixture, case_id, interaction):
+    """R glmmTMB 1.1 (Laplace) on synthetic trials."""
+    case = golden(case_id)
+    found = crossed_logistic(of_fixture(paper_fixture, "correct"), interaction)
+    holds(
+        case,
+        {
+            "b0": found.intercept,
+            "b1": found.estimate,
+            "se_b1": found.se,
+            "loglik": found.log_likelihood,
+            "lrt": found.likelihood_ratio,
+        },
+    )
+    assert found.likelihood_ratio_p == pytest.approx(case["expected"]["p_lrt"], rel=1e-5)
+    sds = {
+        "p.(Intercept)": found.sd_participant,
+        "j.(Intercept)": found.sd_scenario,
+        "jc.(Intercept)": found.sd_scenario_in_arm,
+    }
+    expected = case["expected"]["sd"]
+    assert {name: sds[name] for name in expected} == pytest.approx(expected, abs=case["tol"])
+    assert (sds["jc.(Intercept)"] is None) is not interaction
+
+
+def test_golden_ordinal(golden, paper_fixture):
+    """R ordinal::clmm on synthetic trials."""
+    case = golden("clmm_fixture")
+    found = crossed_ordinal(of_fixture(paper_fixture, "confidence"))
+    holds(
+        case,
+        {
+            "b1": found.estimate,
+            "se": found.se,
+            "loglik": found.log_likelihood,
+            "sd_p": found.sd_participant,
+            "sd_j": found.sd_scenario,
+        },
+    )
+
+
+def test_t_has_a_degree_of_freedom_less_than_there_are_scenarios(paper_fixture):
+    found = defined(crossed_logistic(of_fixture(paper_fixture, "correct")))
+    assert found.df == 36
+    assert found.p == pytest.approx(2 * stats.t.sf(found.estimate / found.se, 36))
+    half = stats.t.ppf(0.975, 36) * found.se
+    assert (found.low, found.high) == pytest.approx((found.estimate - half, found.estimate + half))
+    odds_ratio = (found.odds_ratio_low, found.odds_ratio, found.odds_ratio_high)
+    assert np.log(odds_ratio) == pytest.approx([found.low, found.estimate, found.high])
+
+
+def test_without_random_effects_it_is_logistic_regression():
+    from statsmodels.api import Logit, add_constant
+
+    data = made(1)
+    other = Logit(data.y, add_constant(data.treated - 0.5)).fit(disp=0)
+    found = CrossedModel(data.y.astype(np.int64), data.treated, [None, None, None]).fit()
+    assert found is not None
+    assert (found.location, found.effect) == pytest.approx(tuple(other.params), abs=1e-7)
+    assert found.covariance[:2, :2] == pytest.approx(other.cov_params(), abs=1e-7)
+    assert found.log_likelihood == pytest.approx(other.llf)
+
+
+def test_without_random_effects_it_is_ordinal_regression():
+    from statsmodels.miscmodels.ordinal_model import OrderedModel
+
+    data = rated(1)
+    model = OrderedModel(data.y, data.treated[:, None] - 0.5, distr="logit")
+    other = model.fit(method="bfgs", disp=0, gtol=1e-8)
+    found = CrossedModel(data.y.astype(np.int64) - 1, data.treated, [None, None, None]).fit()
+    assert found is not None
+    assert found.effect == pytest.approx(other.params[0], abs=1e-5)
+    assert found.location == pytest.approx(-other.params[1], abs=1e-5)
+    assert found.covariance[1, 1] ** 0.5 == pytest.approx(other.bse[0], abs=1e-5)
+    assert found.log_likelihood == pytest.approx(other.llf)
+
+
+def test_variances_estimated_as_0_leave_the_standard_error_of_logistic_regression():
+    """Every participant and scenario is right equally often: less than chance would differ."""
+    from statsmodels.api import Logit, add_constant
+
+    participant, scenario = (each.ravel() for each in np.indices((24, 12)))
+    treated = participant % 2 == 0
+    turn = (participant // 2 + scenario) % 12
+    y = (turn < np.where(treated, 9, 7)).astype(float)
+    found = defined(
+        crossed_logistic(Outcome("correct", "share", y, treated, participant, scenario))
+    )
+    other = Logit(y, add_constant(treated.astype(float))).fit(disp=0)
+    assert (found.sd_participant, found.sd_scenario, found.sd_scenario_in_arm) == (0, 0, 0)
+    assert found.estimate == pytest.approx(other.params[1], abs=1e-6)
+    assert found.se == pytest.approx(other.bse[1], abs=1e-6)
+    assert found.warnings == ("zero_variance",)
+    low, high = 7 / 12, 9 / 12
+    se = math.sqrt((low * (1 - low) + high * (1 - high)) / 144)
+    assert found.risk_difference == pytest.approx(high - low, abs=1e-6)
+    half = stats.t.ppf(0.975, 11) * se
+    assert found.risk_difference_high - found.risk_difference == pytest.approx(half, abs=1e-6)
+
+
+def test_the_risk_difference_averages_over_participants_and_scenarios():
+    found = defined(crossed_logistic(made(2)))
+    sd = math.hypot(found.sd_participant, found.sd_scenario, found.sd_scenario_in_arm)
+
+    def share(eta):
+        return integrate.quad(lambda z: expit(eta + sd * z) * stats.norm.pdf(z), -9, 9)[0]
+
+    expected = share(found.intercept + found.estimate) - share(found.intercept)
+    assert found.risk_difference == pytest.approx(expected, abs=1e-5)
+    assert found.risk_difference_low < expected < found.risk_difference_high
+
+
+def test_the_likelihood_ratio_leaves_out_nothing_but_the_arm():
+    """Where there is no effect it is near the square of t, and far below the effect's."""
+    null = defined(crossed_logistic(made(3, effect=0.0)))
+    assert 0 <= null.likelihood_ratio < 4
+    assert null.likelihood_ratio == pytest.approx(null.statistic**2, abs=0.2)
+    assert defined(crossed_logistic(made(3, effect=3.0))).likelihood_ratio > 10
+
+
+@pytest.mark.parametrize("test", [crossed_logistic, crossed_ordinal])
+def test_swapping_the_arms_flips_the_sign_and_keeps_p(test):
+    data = made(4) if test is crossed_logistic else rated(4)
+    one, other = (
+        defined(test(data)),
+        defined(test(dataclasses.replace(data, treated=~data.treated))),
+    )
+    assert other.estimate == pytest.approx(-one.estimate, abs=1e-6)
+    assert (other.low, other.high) == pytest.approx((-one.high, -one.low), abs=1e-6)
+    assert (other.se, other.p) == pytest.approx((one.se, one.p), abs=1e-6)
+    assert other.likelihood_ratio == pytest.approx(one.likelihood_ratio, abs=1e-6)
+
+
+@pytest.mark.parametrize("test", [crossed_logistic, crossed_ordinal])
+def test_the_order_of_rows_changes_nothing(test):
+    data = made(5) if test is crossed_logistic else rated(5)
+    order = np.random.default_rng(5).permutation(len(data.y))
+    columns = ("y", "treated", "participant", "scenario")
+    shuffled = dataclasses.replace(data, **{name: getattr(data, name)[order] for name in columns})
+    one, other = defined(test(data)), defined(test(shuffled))
+    assert (other.estimate, other.se) == pytest.approx((one.estimate, one.se), abs=1e-6)
+    assert other.log_likelihood == pytest.approx(one.log_likelihood, abs=1e-7)
+
+
+def test_counting_wrong_guesses_flips_the_sign():
+    data = made(6)
+    one, other = (
+        defined(crossed_logistic(data)),
+        defined(crossed_logistic(dataclasses.replace(data, y=1 - data.y))),
+    )
+    assert other.estimate == pytest.approx(-one.estimate, abs=1e-6)
+    assert other.risk_difference == pytest.approx(-one.risk_difference, abs=1e-6)
+    assert other.se == pytest.approx(one.se, abs=1e-6)
+
+
+def test_two_ratings_make_the_logistic_model():
+    data = made(7)
+    one, other = crossed_logistic(data, interaction=False), crossed_ordinal(data)
+    assert (other.estimate, other.se, other.p) == (one.estimate, one.se, one.p)
+
+
+def test_only_the_order_of_ratings_matters():
+    data = rated(8)
+    assert crossed_ordinal(dataclasses.replace(data, y=np.exp(data.y))) == crossed_ordinal(data)
+
+
+def test_missing_values_are_left_out_and_counted():
+    data = made(9)
+    there = np.arange(len(data.y)) % 7 > 0
+    found = crossed_logistic(dataclasses.replace(data, y=np.where(there, data.y, np.nan)))
+    kept = [each[there] for each in (data.y, data.treated, data.participant, data.scenario)]
+    alone = crossed_logistic(Outcome("correct", "share", *kept))
+    assert (found.n, found.n_missing) == (there.sum(), (~there).sum())
+    assert dataclasses.replace(found, n_missing=0) == alone
+
+
+def test_an_empty_arm_is_a_structured_error():
+    data = made(10)
+    with pytest.raises(EmptyArmError) as caught:
+        crossed_logistic(dataclasses.replace(data, y=np.where(data.treated, np.nan, data.y)))
+    assert (caught.value.arm, caught.value.measure) == ("treatment", "correct")
+
+
+@pytest.mark.parametrize("test", [crossed_logistic, crossed_ordinal])
+@pytest.mark.parametrize(
+    ("change", "warning"),
+    [
+        (lambda data: {"y": np.ones_like(data.y)}, "constant_outcome"),
+        (lambda data: {"y": np.where(data.treated, data.y.max(), data.y)}, "separation"),
+        (lambda data: {"y": (data.participant % 5 < 3).astype(float)}, "not_converged"),
+    ],
+)
+def test_without_a_maximum_there_is_no_estimate_but_a_warning(test, change, warning):
+    data = made(11)
+    found = test(dataclasses.replace(data, **change(data)))
+    assert (found.estimate, found.se, found.p, found.log_likelihood) == (None,) * 4
+    assert warning in found.warnings
+
+
+@pytest.mark.parametrize(
+    ("change", "warning"),
+    [
+        (lambda data: {"scenario": np.zeros_like(data.scenario)}, "one_scenario"),
+        (lambda data: {"participant": data.treated.astype(np.int64)}, "one_participant"),
+    ],
+)
+def test_one_cluster_gives_an_estimate_without_a_test(change, warning):
+    data = made(12)
+    found = crossed_logistic(dataclasses.replace(data, **change(data)))
+    assert found.estimate is not None
+    assert (found.se, found.p, found.low, found.risk_difference_low) == (None,) * 4
+    assert warning in found.warnings
+
+
+def test_a_factor_that_trials_cannot_tell_is_left_out():
+    data = made(13)
+    trial = np.arange(len(data.y))
+    single = crossed_logistic(dataclasses.replace(data, participant=trial))
+    apart = crossed_logistic(dataclasses.replace(data, scenario=2 * data.scenario + data.treated))
+    assert single.sd_participant is None
+    assert "single_trials" in single.warnings
+    assert apart.sd_scenario_in_arm is None
+    assert "scenarios_not_shared" in apart.warnings
+
+
+def test_few_clusters_are_told():
+    assert "few_clusters" in crossed_logistic(made(14, participants=12)).warnings
+    assert "few_clusters" not in crossed_logistic(made(14)).warnings
+
+
+def test_more_scenarios_than_the_model_can_take_are_told():
+    trial = np.arange(2008)
+    treated = trial % 2 == 0
+    y = (trial % 3 == 0).astype(float)
+    data = Outcome("correct", "share", y, treated, trial // 2 // 4 * 2 + treated, trial // 4)
+    found = crossed_logistic(data)
+    assert (found.estimate, found.warnings) == (None, ("too_many_clusters",))
