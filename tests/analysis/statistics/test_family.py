@@ -1,12 +1,13 @@
 """Correcting several p values: R's numbers, and what Holm's procedure promises."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from analysis.statistics.family import holm
 
 FAMILIES = st.lists(st.none() | st.floats(0, 1), max_size=6)
+FEW = settings(max_examples=10)  # statsmodels collects garbage in every call
 
 
 def test_golden_holm(golden):
@@ -16,6 +17,7 @@ def test_golden_holm(golden):
     assert holm(case["input"]["p"]) == pytest.approx(case["expected"]["p_adj"], abs=case["tol"])
 
 
+@FEW
 @given(FAMILIES)
 def test_a_missing_p_changes_no_other(family):
     present = [p for p in family if p is not None]
@@ -24,6 +26,7 @@ def test_a_missing_p_changes_no_other(family):
     assert tuple(p for p in corrected if p is not None) == holm(present)
 
 
+@FEW
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=6))
 def test_the_smallest_p_is_multiplied_by_their_number_and_the_order_is_kept(family):
     corrected = [p for p in holm(family) if p is not None]
