@@ -12,15 +12,7 @@ from .exclusions import Excluded
 from .flow import Flow
 from .plan import Plan
 from .statistics.outcome import Clusters, Outcome
-
-
-@dataclass(frozen=True)
-class Source:
-    """A file that was read: its name, SHA-256 in hexadecimal, and number of rows."""
-
-    file: str
-    sha256: str
-    rows: int
+from .study import Source
 
 
 @dataclass(frozen=True)

@@ -1,69 +1,18 @@
-"""From an export folder, or one file of trials, to checked data.
-
-Two layouts are read. A file with all columns of `contract.TRIALS` (an older one lacks those that
-came later) is an export of Goalguess and is held to the whole contract. Any other file is a table
-of trials from elsewhere: it needs the columns of `NEEDED` (with `correct`, or `guess` and `goal`),
-under these names, those of `mapping.ALIASES` or those that a mapping tells; it may have further
-conditions, which the plan leaves out; and it may have missing answers, which are counted and left
-out of the estimates that need them.
-"""
+"""From files to the data that the plan analyses."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Collection
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import polars as pl
 
-from . import derive
-from .columns import Table
-from .contract import PARTICIPANTS, TRIALS
-from .dataset import Dataset, Source
-from .errors import AnalysisError, EmptyArmError, TableError
+from .dataset import Dataset
+from .errors import EmptyArmError
 from .exclusions import exclude
 from .flow import participant_flow
 from .mapping import TableMapping
-from .participant_rules import participant_problems
 from .plan import Plan, default_plan
-from .scanning import FORMATS, is_empty_jsonl, scan, typed
-from .tables import read_rows
-from .trial_rules import membership_problems, trial_problems
-from .validation import ROW, column_problems, raise_first
-
-NEEDED = (
-    "participant",
-    "condition",
-    "scenario",
-    "trial_index",
-    "stop_time_s",
-    "length_s",
-    "confidence",
-)
-"""What an analysis needs, besides `correct` or else `guess` and `goal`."""
-
-ANSWERS = (
-    "goal",
-    "guess",
-    "correct",
-    "stop_time_s",
-    "length_s",
-    "prediction_time_s",
-    "score",
-    "confidence",
-)
-"""What may be missing in a trial from elsewhere."""
-
-
-@dataclass(frozen=True)
-class _Tables:
-    """The tables of a study as they came, checked, with `ROW`; `participants` may be missing."""
-
-    trials: pl.DataFrame
-    participants: pl.DataFrame | None
-    sources: tuple[Source, ...]
-    renamed: tuple[tuple[str, str], ...]
+from .study import read_study
 
 
 def read_dataset(
@@ -80,127 +29,34 @@ def read_dataset(
     mapping that does not fit the data, EmptyArmError for a condition without trials.
     """
     plan, mapping = plan or default_plan(), mapping or TableMapping()
-    tables = _read_tables(path, mapping)
-    trials, participants = tables.trials.drop(ROW), tables.participants
-    if participants is not None:
-        participants = participants.drop(ROW)
+    study = read_study(path, mapping)
+    chosen, participants = study.trials, study.participants
     if not with_simulated:
-        trials = _only_real(trials)
+        chosen = _only_real(chosen)
         participants = None if participants is None else _only_real(participants)
     compared = pl.col("condition").is_in(plan.arms.names)
-    others = trials.filter(~compared)
-    trials = trials.filter(compared).with_columns(
-        treated=pl.col("condition") == plan.arms.treatment.condition
-    )
-    left_out = len(tables.trials) - len(trials) - len(others)
-    _check_arms(plan, trials, others, _and_left_out(left_out))
+    trials, others = chosen.filter(compared), chosen.filter(~compared)
+    _check_arms(plan, trials, _why_empty(plan, len(study.trials) - len(chosen), others))
     excluded = exclude(plan.exclusions, trials, participants, plan.file)
-    out = pl.Series([name for each in excluded for name in each.participants], dtype=pl.String)
-    kept = ~pl.col("participant").is_in(out.implode())
+    out = [name for each in excluded for name in each.participants]
+    kept = ~pl.col("participant").is_in(out)
     analysed = trials.filter(kept)
-    _check_arms(plan, analysed, others.clear(), f" ({len(out)} participants excluded by the plan)")
+    _check_arms(plan, analysed, f" ({len(out)} participants excluded by the plan)")
+    others_by_condition = _by_condition(others, pl.col("participant").n_unique())
     return Dataset(
         plan=plan,
-        trials=analysed,
+        trials=analysed.with_columns(treated=pl.col("condition") == plan.arms.treatment.condition),
         participants=None if participants is None else participants.filter(kept),
-        sources=tables.sources,
-        simulated=_count(tables.trials, "simulated"),
-        preview=_count(tables.trials, "preview"),
+        sources=study.sources,
+        simulated=_count(study.trials, "simulated"),
+        preview=_count(study.trials, "preview"),
         with_simulated=with_simulated,
         other_conditions=_by_condition(others, pl.len()),
         excluded=excluded,
-        flow=participant_flow(
-            plan.arms,
-            trials,
-            participants,
-            _by_condition(others, pl.col("participant").n_unique()),
-            excluded,
-        ),
-        renamed=tables.renamed,
+        flow=participant_flow(plan.arms, trials, participants, others_by_condition, excluded),
+        renamed=study.renamed,
         confidence_scale=mapping.confidence,
     )
-
-
-def _read_tables(path: Path, mapping: TableMapping) -> _Tables:
-    trials_path, participants_path = _find(path)
-    trials, renamed = _read_trials(trials_path, mapping)
-    source = _source(trials_path, trials)
-    if participants_path is None:
-        return _Tables(trials, None, (source,), renamed)
-    everyone = read_rows(PARTICIPANTS, participants_path)
-    raise_first(participants_path.name, participant_problems(everyone))
-    raise_first(trials_path.name, membership_problems(trials, everyone, participants_path.name))
-    return _Tables(trials, everyone, (source, _source(participants_path, everyone)), renamed)
-
-
-def _find(path: Path) -> tuple[Path, Path | None]:
-    """Return the file of trials and, in a folder that has one, the file of participants."""
-    if path.is_file():
-        return path, None
-    if not path.is_dir():
-        raise AnalysisError(f"{path}: expected an export folder or a file of trials, got nothing")
-    trials = _in_any_format(path, TRIALS.name)
-    if trials is None:
-        wanted = " or ".join(f"{TRIALS.name}{suffix}" for suffix in FORMATS)
-        raise AnalysisError(f"{path}: expected a folder with {wanted}, got one without")
-    return trials, _in_any_format(path, PARTICIPANTS.name)
-
-
-def _in_any_format(folder: Path, name: str) -> Path | None:
-    candidates = (folder / f"{name}{suffix}" for suffix in FORMATS)
-    return next((path for path in candidates if path.is_file()), None)
-
-
-def _read_trials(
-    path: Path, mapping: TableMapping
-) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...]]:
-    if is_empty_jsonl(path):
-        raise AnalysisError(f"{path.name}: expected at least one trial, got an empty file")
-    raw, names = scan(path)
-    sources = mapping.sources(names, path.name)
-    _check_columns(path, names, sources)
-    table = _table_of(mapping, sources)
-    present = [column for column in table.columns if column.name in sources]
-    raw = raw.select(ROW, *(pl.col(theirs).alias(ours) for ours, theirs in sources.items()))
-    trials, problems = typed(raw, present, path)
-    trials = mapping.translated(trials)
-    unread = [problem.column for problem in problems]
-    optional = [*unread, *(() if _is_export(sources) else ANSWERS)]
-    problems += column_problems(trials, table, optional) + trial_problems(trials)
-    raise_first(path.name, problems, sources)
-    renamed = tuple((theirs, ours) for ours, theirs in sources.items() if theirs != ours)
-    return _with_measures(trials), renamed
-
-
-def _is_export(columns: Collection[str]) -> bool:
-    return set(columns) >= set(TRIALS.always)
-
-
-def _table_of(mapping: TableMapping, columns: Collection[str]) -> Table:
-    """Return the trials' contract as it binds this file: elsewhere conditions have other names."""
-    declared = [mapping.declared(column) for column in TRIALS.columns]
-    if not _is_export(columns):
-        declared = [
-            replace(column, choices=()) if column.name == "condition" else column
-            for column in declared
-        ]
-    return replace(TRIALS, columns=tuple(declared))
-
-
-def _check_columns(path: Path, names: list[str], present: Collection[str]) -> None:
-    missing = [name for name in NEEDED if name not in present]
-    if "correct" not in present and not {"guess", "goal"} <= set(present):
-        missing.append("correct (or guess and goal)")
-    if missing:
-        raise TableError(path.name, f"columns {', '.join(missing)}", ", ".join(names), row=1)
-
-
-def _with_measures(trials: pl.DataFrame) -> pl.DataFrame:
-    """Fill in what was not recorded, by its definition."""
-    if {"guess", "goal"} <= set(trials.columns):
-        recorded = pl.col("correct") if "correct" in trials.columns else pl.lit(None, pl.Boolean)
-        trials = trials.with_columns(correct=recorded.fill_null(derive.CORRECT))
-    return trials.with_columns(prediction_time_s=derive.PREDICTION_TIME_S)
 
 
 def _only_real(rows: pl.DataFrame) -> pl.DataFrame:
@@ -217,19 +73,14 @@ def _by_condition(trials: pl.DataFrame, count: pl.Expr) -> dict[str, int]:
     return dict(counts.iter_rows())
 
 
-def _and_left_out(trials: int) -> str:
-    return f" ({trials} simulated or preview trials left out)" if trials else ""
+def _why_empty(plan: Plan, unreal: int, others: pl.DataFrame) -> str:
+    """Say what may leave an arm empty: trials left out, conditions that the plan does not name."""
+    found = ", ".join(others["condition"].unique().sort())
+    note = f" ({unreal} simulated or preview trials left out)" if unreal else ""
+    return f"{note}; {plan.file} compares none of: {found}" if found else note
 
 
-def _check_arms(plan: Plan, trials: pl.DataFrame, others: pl.DataFrame, note: str) -> None:
+def _check_arms(plan: Plan, trials: pl.DataFrame, note: str) -> None:
     for condition in plan.arms.names:
         if trials.filter(pl.col("condition") == condition).is_empty():
-            found = ", ".join(others["condition"].unique().sort())
-            hint = f"; {plan.file} compares none of: {found}" if found else ""
-            raise EmptyArmError(condition, "trial", note + hint)
-
-
-def _source(path: Path, rows: pl.DataFrame) -> Source:
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256")
-    return Source(path.name, digest.hexdigest(), len(rows))
+            raise EmptyArmError(condition, "trial", note)

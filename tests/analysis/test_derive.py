@@ -57,7 +57,10 @@ def test_whether_guesses_are_correct(rows):
 )
 def test_what_follows_from_times_and_correct(expression, definition, rows):
     needed = ("correct", "stop_time_s", "length_s")
-    assert derived(rows, expression) == by_definition(rows, definition, *needed, impossible=True)
+    expected = by_definition(rows, definition, *needed, impossible=True)
+    # polars multiplies by 1 / 3 where Python divides by 3
+    nearly = [each if each is None else pytest.approx(each, rel=1e-14) for each in expected]
+    assert derived(rows, expression) == nearly
 
 
 @given(ROWS)
