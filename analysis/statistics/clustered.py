@@ -74,7 +74,7 @@ def clustered_difference(outcome: Outcome) -> ClusteredDifference:
     """Compare means, trials clustered by participant.
 
     Linearised variance of a ratio per arm times K/(K-1), Satterthwaite's degrees of freedom.
-    EmptyArmError if an arm has no value. Source: Cochran (1977), Sampling Techniques, section 6.
+    EmptyArmError if an arm has no value. Source: Cochran (1977), Sampling Techniques.
     """
     data = outcome.present()
     influence = of_difference(data)

@@ -32,10 +32,11 @@ class IntraclassCorrelation(TestResult):
 def intraclass_correlation(outcome: Outcome) -> IntraclassCorrelation:
     """Estimate from the analysis of variance of participants within arms, with Searle's interval.
 
-    The interval is exact for normal values and equal numbers of trials, else approximate. None
-    with a warning if each arm has one participant, each participant one trial, or values vary
-    in no arm. EmptyArmError if an arm has no value. Source: Donner and Klar (2000), Design and
-    Analysis of Cluster Randomization Trials; Searle (1971), Linear Models.
+    The interval is exact for normal values and equal numbers of trials, else approximate. F is
+    not defined, with a warning, if each arm has one participant, each participant one trial, or
+    no participant's trials differ (then the correlation is 1, or None if nobody differs either).
+    EmptyArmError if an arm has no value. Source: Donner and Klar (2000), Design and Analysis of
+    Cluster Randomization Trials; Searle (1971), Linear Models.
     """
     data = outcome.present()
     n, participants = len(data.y), cluster_count(data.participant)

@@ -23,6 +23,8 @@ from tests.analysis.statistics.outcomes import of_fixture, outcome
 TESTS: Any = (clustered_difference, clustered_auc, two_way_difference, two_way_auc)
 TWO_WAY = TESTS[2:]
 NAN = float("nan")
+APART = [9, 2, 7, 4, 5, 11, 0, 3, 6, 10, 8, 1]
+"""Scenarios of twelve trials, each another, in an order that shows rounding of sums."""
 
 
 def test_golden_clustered_difference(golden, paper_fixture):
@@ -259,7 +261,7 @@ def test_arms_that_differ_without_variation_are_not_tested(test):
 @pytest.mark.parametrize("test", TESTS)
 def test_rounding_is_not_taken_for_variation_between_participants(test):
     alike = [0.1, 0.7, 0.3, 0.7, 0.3, 0.1], [0.2, 0.4, 0.9, 0.9, 0.2, 0.4]
-    trials = outcome([*alike[0], *alike[1]], [1] * 6 + [0] * 6, [*"aaabbbcccddd"], range(12))
+    trials = outcome([*alike[0], *alike[1]], [1] * 6 + [0] * 6, [*"aaabbbcccddd"], APART)
     assert (test(trials).statistic, test(trials).low) == (None, None)
     assert "no_variation" in test(trials).warnings
 

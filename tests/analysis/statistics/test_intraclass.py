@@ -49,8 +49,9 @@ def test_searles_interval_ends_where_f_is_at_its_quantiles(paper_fixture):
         (outcome([1, 0, 0, 1], [1, 1, 0, 0], [*"abcd"], [*"stst"]), None, "single_trials"),
         (outcome([0.1] * 8, [1] * 4 + [0] * 4, [*"aabbccdd"], [*"st"] * 4), None, "no_variation"),
         (
+            # sums of seven equal numbers that rounding blurs
             outcome(
-                [0.1] * 3 + [0.7] * 3 + [0.3] * 3, [1] * 6 + [0] * 3, [*"aaabbbccc"], [*"stu"] * 3
+                np.repeat([0.3, 0, 0, 0.8], 7), [1] * 14 + [0] * 14, np.arange(28) // 7, [0] * 28
             ),
             1.0,
             "no_variation",
