@@ -1,51 +1,59 @@
 """Comparing by ranks, against frozen numbers of R, closed forms and its own symmetries."""
 
 import math
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import stats
 
-from analysis import EmptyArmError, read_dataset
-from analysis.as_in_paper import values_of
+from analysis import EmptyArmError
 from analysis.statistics.estimates import mean
-from analysis.statistics.ranks import mann_whitney
+from analysis.statistics.ranks import brunner_munzel, hodges_lehmann, mann_whitney
 from tests.analysis.statistics.cases import holds
+from tests.analysis.statistics.outcomes import of_fixture
 
 RATINGS = st.lists(st.integers(1, 7), min_size=1, max_size=30)
 
 
-@pytest.mark.parametrize("case_id", ["mw_no_ties", "mw_likert_ties", "mw_all_tied"])
+@pytest.mark.parametrize("case_id", ["mw_no_ties", "mw_likert_ties"])
 def test_golden_mann_whitney(golden, case_id):
-    """R 4.2.2 wilcox.test(correct = FALSE, exact = FALSE)."""
+    """R 4.2.2 wilcox.test, exactRankTests 0.8; Brunner-Munzel by formula in R."""
     case = golden(case_id)
-    check_ranks(mann_whitney(case["input"]["x"], case["input"]["y"]), case)
+    check_ranks(case, case["input"]["x"], case["input"]["y"])
 
 
 def test_golden_mann_whitney_of_the_papers_confidence_counts(golden):
-    """R 4.2.2 wilcox.test(correct = FALSE, exact = FALSE)."""
+    """R 4.2.2 wilcox.test; Brunner-Munzel by formula in R."""
     case = golden("paper_confidence_counts")
-    given = case["input"]
-    x = np.repeat(given["levels"], given["x_counts"])
-    y = np.repeat(given["levels"], given["y_counts"])
-    check_ranks(mann_whitney(x, y), case)
-    assert mean(x, "").mean == pytest.approx(case["expected"]["mean1"])
-    assert mean(y, "").mean == pytest.approx(case["expected"]["mean2"])
+    levels = case["input"]["levels"]
+    x, y = (np.repeat(levels, case["input"][counts]) for counts in ("x_counts", "y_counts"))
+    check_ranks(case, x, y)
 
 
 def test_golden_mann_whitney_of_the_fixtures_times(golden, paper_fixture):
-    """R 4.2.2 wilcox.test(correct = FALSE, exact = FALSE) on synthetic trials."""
-    case = golden("paper_time_fixture")
-    data = read_dataset(paper_fixture)
-    x, y = (values_of(data, arm, "prediction_time_s") for arm in ("polmdp", "optimal"))
-    check_ranks(mann_whitney(x, y), case)
-    assert mean(x, "s").mean == pytest.approx(case["expected"]["mean1"])
-    assert mean(y, "s").mean == pytest.approx(case["expected"]["mean2"])
+    """R 4.2.2 wilcox.test on synthetic trials; Brunner-Munzel by formula in R."""
+    data = of_fixture(paper_fixture, "time")
+    check_ranks(golden("paper_time_fixture"), data.y[data.treated], data.y[~data.treated])
 
 
-def check_ranks(test, case):
-    names = {
+@pytest.mark.parametrize("measure", ["correct", "confidence"])
+def test_golden_mann_whitney_of_participants_means(golden, paper_fixture, measure):
+    """R 4.2.2 wilcox.test on synthetic trials; Brunner-Munzel by formula in R."""
+    data = of_fixture(paper_fixture, measure)
+    sums = np.bincount(data.participant, data.y)
+    treated = np.bincount(data.participant, data.treated) > 0
+    # every participant has ten trials: whole sums keep the ties of the means exact
+    x, y = sums[treated] / 10, sums[~treated] / 10
+    check_ranks(golden(f"participant_mw_{measure}"), x, y)
+
+
+def check_ranks(case, x, y):
+    test, brunner, shift = mann_whitney(x, y), brunner_munzel(x, y), hodges_lehmann(x, y)
+    found: dict[str, Any] = {
         "n1": test.n_treatment,
         "n2": test.n_reference,
         "n_missing": test.n_missing,
@@ -55,20 +63,55 @@ def check_ranks(test, case):
         "sd_tie_corrected": test.sd,
         "z": test.statistic,
         "p": test.p,
+        "p_continuity": test.p_continuity,
+        "p_exact": test.p_exact,
         "auc": test.estimate,
         "rank_biserial": test.rank_biserial,
         "median1": test.median_treatment,
         "median2": test.median_reference,
+        "mean1": mean(x, "").mean,
+        "mean2": mean(y, "").mean,
+        "hodges_lehmann": shift.estimate,
+        "brunner_munzel_t": -(brunner.statistic or 0),
+        "brunner_munzel_df": brunner.df,
+        "brunner_munzel_p": brunner.p,
     }
-    holds(case, {name: value for name, value in names.items() if name in case["expected"]})
-    assert list(test.warnings) == case["expected"].get("warnings", [])
+    if "hl_ci_exact" in case["expected"]:
+        found["hl_ci_exact"] = [shift.low, shift.high]
+    assert found.keys() | {"ties"} == case["expected"].keys()
+    holds(case, found)
+    for name in ("p", "p_continuity", "brunner_munzel_p"):
+        assert found[name] == pytest.approx(case["expected"][name], rel=case["tol"]), name
+
+
+def test_golden_all_tied_has_no_statistic_but_a_warning(golden):
+    """By contract; R returns NaN."""
+    case = golden("mw_all_tied")
+    x, y = case["input"]["x"], case["input"]["y"]
+    test, shift, brunner = mann_whitney(x, y), hodges_lehmann(x, y), brunner_munzel(x, y)
+    holds(
+        case,
+        {
+            "u1": test.u_treatment,
+            "u2": test.u_reference,
+            "auc": test.estimate,
+            "rank_biserial": test.rank_biserial,
+            "z": test.statistic,
+            "p": test.p,
+            "hodges_lehmann": shift.estimate,
+        },
+    )
+    assert (brunner.statistic, brunner.p, test.p_continuity, test.p_exact) == (None, 1, 1, 1)
+    for each in (test, shift, brunner):
+        assert list(each.warnings) == case["expected"]["warnings"]
 
 
 def test_golden_mann_whitney_of_an_empty_arm_is_a_structured_error(golden):
     case = golden("mw_empty")
     assert case["expected"] == {"error": "empty_arm"}
-    with pytest.raises(EmptyArmError, match=r"condition reference: .* confidence, got none"):
-        mann_whitney(case["input"]["x"], case["input"]["y"], "confidence")
+    for method in (mann_whitney, brunner_munzel, hodges_lehmann):
+        with pytest.raises(EmptyArmError, match=r"condition reference: .* confidence, got none"):
+            method(case["input"]["x"], case["input"]["y"], "confidence")
 
 
 @given(RATINGS, RATINGS)
@@ -119,3 +162,79 @@ def test_missing_values_are_left_out_and_counted():
 def test_an_arm_of_missing_values_only_is_empty():
     with pytest.raises(EmptyArmError, match="condition treatment"):
         mann_whitney([float("nan")], [1.0])
+
+
+@given(RATINGS, RATINGS)
+def test_brunner_munzel_is_scipys_with_the_sign_turned(x, y):
+    found = brunner_munzel(x, y)
+    assert found.estimate == pytest.approx(mann_whitney(x, y).estimate)
+    if found.statistic is None:
+        assert found.warnings
+    else:
+        t, p = stats.brunnermunzel(x, y)
+        assert (found.statistic, found.p) == pytest.approx((-t, p), abs=1e-9)
+
+
+def test_arms_that_do_not_overlap_leave_brunner_munzel_without_variance():
+    found = brunner_munzel([5, 6, 7], [1, 2])
+    assert (found.estimate, found.statistic, found.p) == (1, None, None)
+    assert found.warnings == ("no_variation",)
+
+
+def test_one_value_in_an_arm_is_too_few_for_an_interval():
+    for method in (brunner_munzel, hodges_lehmann):
+        found = method([3.0], [1.0, 2.5])
+        assert (found.low, found.high, found.warnings) == (None, None, ("too_few_values",))
+
+
+@given(RATINGS, RATINGS)
+def test_the_shift_is_the_median_of_all_differences(x, y):
+    differences = np.subtract.outer(x, y)
+    assert hodges_lehmann(x, y).estimate == np.median(differences)
+
+
+@given(RATINGS, RATINGS)
+def test_swapping_the_arms_mirrors_the_shift(x, y):
+    one, other = hodges_lehmann(x, y), hodges_lehmann(y, x)
+    assert one.estimate == -(other.estimate or 0)
+    if one.low is not None and other.high is not None:
+        assert one.low == -other.high
+
+
+@pytest.mark.parametrize(
+    ("n", "method", "moved"), [(12, "exact", 0.0), (60, "asymptotic", 0.0), (60, "asymptotic", 0.8)]
+)
+def test_the_interval_holds_the_shifts_that_a_mann_whitney_test_does_not_reject(n, method, moved):
+    rng = np.random.default_rng(n)
+    x, y = rng.normal(moved, 1, n), rng.normal(0, 2, n - 3)
+    found = hodges_lehmann(x, y)
+    assert found.low is not None
+    assert found.high is not None
+    assert method in found.method
+    for bound, inwards in ((found.low, 1e-6), (found.high, -1e-6)):
+        inside, outside = (
+            stats.mannwhitneyu(x - shift, y, use_continuity=False, method=method).pvalue
+            for shift in (bound + inwards, bound - inwards)
+        )
+        assert outside < 0.05 <= inside
+
+
+@given(RATINGS, RATINGS)
+def test_the_exact_p_is_the_share_of_relabellings_whose_rank_sum_is_as_extreme(x, y):
+    x, y = x[:4], y[:4]
+    ranks = stats.rankdata(x + y)
+    centre = len(x) * ranks.mean()
+    extreme = [abs(sum(arm) - centre) for arm in combinations(ranks, len(x))]
+    expected = np.mean(np.array(extreme) >= extreme[0] - 1e-9)
+    assert mann_whitney(x, y).p_exact == pytest.approx(expected)
+
+
+def test_without_ties_the_exact_p_is_scipys():
+    x, y = np.random.default_rng(4).normal(size=(2, 30))
+    expected = stats.mannwhitneyu(x, y, method="exact").pvalue
+    assert mann_whitney(x, y).p_exact == pytest.approx(expected)
+
+
+def test_from_50_values_in_an_arm_there_is_no_exact_p():
+    assert mann_whitney(range(49), range(49)).p_exact is not None
+    assert mann_whitney(range(50), range(3)).p_exact is None
