@@ -8,6 +8,8 @@ from typing import Annotated
 import typer
 
 from .command_line import one_line_errors, status
+from .level_cli import level
+from .power_cli import power
 from .reconstruct_cli import reconstruct
 
 commands = typer.Typer()
@@ -53,4 +55,6 @@ def analyse(
         typer.echo(f"Written: {to / 'report.md'}, report.json, figures/", err=True)
 
 
+commands.command()(power)
+commands.command()(level)
 commands.command()(reconstruct)

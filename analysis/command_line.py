@@ -27,3 +27,18 @@ def status() -> Iterator[Callable[[str], None]]:
 
     with Console(stderr=True).status("") as shown:
         yield shown.update
+
+
+@contextmanager
+def counting(doing: str, total: int | None = None) -> Iterator[Callable[[int], None]]:
+    """Show on the terminal how many of `total` are done, and nothing where no one looks."""
+    from rich.console import Console
+    from rich.progress import MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    columns = (*Progress.get_default_columns(), MofNCompleteColumn(), TimeElapsedColumn())
+    console = Console(stderr=True)
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as progress:
+        task = progress.add_task(doing, total=total)
+        yield lambda done: progress.advance(task, done)

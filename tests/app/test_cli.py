@@ -46,6 +46,8 @@ def test_the_commands_of_all_three_packages_are_one_command():
         "compare",
         "teach",
         "analyse",
+        "power",
+        "level",
         "reconstruct",
     }
 

@@ -1,0 +1,84 @@
+"""`goalguess level`: the tests' type I error, by simulation."""
+
+from __future__ import annotations
+
+from dataclasses import astuple
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .command_line import counting, one_line_errors
+
+if TYPE_CHECKING:
+    from .level_check import LevelTable
+
+_TESTS = (
+    "chi_square",
+    "gee_logistic",
+    "crossed_logistic",
+    "two_way_difference",
+    "mann_whitney",
+    "two_way_auc",
+)
+
+
+def level(
+    sds: Annotated[
+        str, typer.Option(help="SDs of participant/scenario/scenario x condition, in logits.")
+    ] = "0/0/0,.5/0/0,1/0/0,.8/.8/.4,.8/.5/.8",
+    tests: Annotated[str, typer.Option(help="Tests to check.")] = ",".join(_TESTS),
+    replicates: Annotated[
+        int, typer.Option(min=1, help="Simulated studies for each of the SDs.")
+    ] = 2000,
+    participants: Annotated[int, typer.Option(help="Both arms together, 10 trials each.")] = 150,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same table.")] = 2209,
+    workers: Annotated[int, typer.Option(min=1, help="Processes at work.")] = 2,
+) -> None:
+    """Count how often tests find a difference in simulated studies that have none: 5 % is right.
+
+    Participants and scenarios differ, the conditions do not. With all tests it takes an hour; the
+    mixed model (crossed_logistic) takes most of it.
+
+    Example: goalguess level --sds .8/.5/.8 --tests two_way_difference,two_way_auc
+    """
+    with one_line_errors():
+        from .crossed_model import Design
+        from .level_check import level_check
+        from .simulated_studies import by_measure
+        from .simulation_options import read_names, read_spreads
+
+        spreads, names = read_spreads(sds), read_names("--tests", tests, _TESTS)
+        design = Design(participants)
+        total = len(spreads) * len(by_measure(names)) * replicates
+        with counting("Simulating studies", total) as tell:
+            table = level_check(spreads, names, design, replicates, seed, workers, tell)
+        typer.echo(_told(table, participants))
+
+
+def _told(table: LevelTable, participants: int) -> str:
+    from .reporting.document import Grid, Paragraph
+    from .reporting.plain import plain_text
+    from .simulated_studies import ALPHA
+
+    header = ("test", *("/".join(f"{sd:g}" for sd in astuple(each)) for each in table.spreads))
+    rows = tuple(
+        (test.replace("_", " "), *(f"{each.rejected.share:.3f}" for each in row))
+        for test, row in table.rows.items()
+    )
+    caption = (
+        f"Share of {table.studies} studies with p < .05, {participants} participants with 10 "
+        "trials each, by SDs of participant/scenario/scenario x condition"
+    )
+    low, high = ALPHA - table.monte_carlo_error, ALPHA + table.monte_carlo_error
+    note = (
+        f"Monte-Carlo error: a test that holds its level is between {low:.3f} and {high:.3f} in "
+        "95 % of such simulations."
+    )
+    undefined = {
+        test.replace("_", " "): sum(each.undefined for each in row)
+        for test, row in table.rows.items()
+    }
+    without = [f"{count} of {test}" for test, count in undefined.items() if count]
+    if without:
+        note += f" Studies in which a test had no p, counted as no rejection: {', '.join(without)}."
+    return plain_text([Grid(caption, header, rows), Paragraph(note)]).rstrip()

@@ -1,0 +1,75 @@
+"""The level of the tests: those that know of clusters hold it, those on trials do not."""
+
+import pytest
+from typer.testing import CliRunner
+
+from analysis.__main__ import alone
+from analysis.crossed_model import Design, Spread
+from analysis.level_check import LevelTable, level_check
+
+HARD = Spread(0.8, 0.5, 0.8)
+NONE = Spread(0, 0, 0)
+
+
+def checked(tests, spreads, studies=250, participants=150):
+    return level_check(spreads, tests, Design(participants), studies, 1, 1, lambda _done: None)
+
+
+def run(*arguments):
+    return CliRunner(env={"COLUMNS": "200"}).invoke(alone, ["level", *arguments])
+
+
+def shares(table, test):
+    return [each.rejected.share for each in table.rows[test]]
+
+
+@pytest.mark.parametrize(
+    ("two_way", "on_trials"),
+    [("two_way_difference", "chi_square"), ("two_way_auc", "mann_whitney")],
+)
+def test_two_way_tests_hold_their_level_where_tests_on_trials_do_not(two_way, on_trials):
+    table = checked((two_way, on_trials), (NONE, HARD))
+    most = 0.05 + 1.6 * table.monte_carlo_error
+    assert all(each <= most for each in shares(table, two_way))
+    independent, clustered = shares(table, on_trials)
+    assert independent <= most
+    assert clustered > 0.2
+
+
+def test_the_level_of_models_is_checked_too():
+    table = checked(("gee_logistic", "crossed_logistic"), (HARD,), studies=2, participants=20)
+    assert [each.rejected.n for row in table.rows.values() for each in row] == [2, 2]
+
+
+def test_the_monte_carlo_error_is_that_of_a_share_of_5_percent():
+    assert LevelTable((), 2000, {}).monte_carlo_error == pytest.approx(0.00955, abs=1e-5)
+
+
+def test_the_command_prints_a_row_a_test_and_a_column_for_each_of_the_sds():
+    options = ["--sds", "0/0/0,.8/.5/.8", "--tests", "two_way_auc,chi_square"]
+    result = run(*options, "--replicates", "20", "--participants", "20", "--workers", "1")
+    assert result.exit_code == 0, result.stderr
+    lines = result.stdout.splitlines()
+    header = next(place for place, line in enumerate(lines) if line.startswith("test "))
+    assert lines[header].split() == ["test", "0/0/0", "0.8/0.5/0.8"]
+    assert [" ".join(line.split()[:-2]) for line in lines[header + 1 : header + 3]] == [
+        "two way auc",
+        "chi square",
+    ]
+    assert "Monte-Carlo error" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--tests", "anova"], "--tests: expected some of chi_square, gee_logistic"),
+        (["--sds", "a/b/c"], "--sds: expected"),
+        (["--sds", "9/0/0"], "standard deviation: expected 0 to 5"),
+        (["--participants", "3"], "expected an even number from 2, got 3"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(options, message):
+    result = run(*options)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert message in result.stderr
+    assert len(result.stderr.splitlines()) == 1
