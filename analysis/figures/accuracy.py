@@ -11,15 +11,16 @@ from .scales import CONFIDENCE, STOP_TIME, Scale
 from .style import (
     COLOURS,
     FAINT,
+    LEGEND_POINTS,
     LINES,
+    MARKER_POINTS,
     MARKERS,
     Labels,
-    capital,
     counts_below,
     legend_above,
     panel,
-    wrapped,
 )
+from .text import capital, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +40,7 @@ def figure_calibration(
     at each level; a level that nobody chose has no mark.
     """
     data = _data(accuracy, labels)
-    note = f"Mark: share of the trials with this rating; {_INTERVAL}. Below: trials."
+    note = f"Mark: share of the trials with this rating; {_INTERVAL}."
     with panel(4.6, note) as (figure, axes):
         levels = [each.upper for each in accuracy.treatment]
         for arm, label in enumerate(labels):
@@ -47,7 +48,7 @@ def figure_calibration(
             _draw(axes, own["upper"] + (2 * arm - 1) * _APART, own, arm, label)
         scale.mark(axes, "x")
         counts = (own["n_trials"] for own in data.partition_by("arm", maintain_order=True))
-        counts_below(axes, "", levels, *counts)
+        counts_below(axes, "Trials", levels, *counts)
         _finish(axes, chance)
         legend_above(figure, axes)
     return Drawn(figure, data, _alt(data, scale.in_words, "", chance))
@@ -93,7 +94,9 @@ def _data(accuracy: AccuracyBy, labels: Labels) -> pl.DataFrame:
 
 def _draw(axes: Axes, x: pl.Series, own: pl.DataFrame, arm: int, label: str) -> None:
     """Draw one arm: marks joined by a line, and whiskers where the interval is defined."""
-    name = f"{wrapped(capital(label), 40, lines=1)}, n = {own['n_trials'].sum():,} trials"
+    name = wrapped(
+        f"{in_sentence(capital(label))}, n = {own['n_trials'].sum():,} trials", LEGEND_POINTS
+    )
     shown = own.with_columns(x=x).drop_nulls("percent")
     axes.plot(
         shown["x"],
@@ -102,7 +105,7 @@ def _draw(axes: Axes, x: pl.Series, own: pl.DataFrame, arm: int, label: str) -> 
         linestyle=LINES[arm],
         linewidth=1.2,
         marker=MARKERS[arm],
-        markersize=5,
+        markersize=MARKER_POINTS[arm],
         label=name,
     )
     sure = shown.drop_nulls("low_percent")

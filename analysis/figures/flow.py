@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from .drawn import Drawn
-from .style import INK, SMALL_POINTS, Labels, capital, panel, wrapped
+from .style import INK, Labels, panel
+from .text import SMALL_POINTS, capital, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,8 +19,7 @@ _LINE_INCHES = 0.17
 _PADDING_INCHES = 0.16
 _GAP_INCHES = 0.13
 _MAIN, _ASIDE = (0.0, 0.52), (0.57, 1.0)
-_UNBROKEN_PLUS = "\N{NO-BREAK SPACE}+\N{NO-BREAK SPACE}"
-_MAIN_CHARACTERS, _ASIDE_CHARACTERS = 30, 24
+_MAIN_POINTS, _ASIDE_POINTS = 162, 130
 
 
 def figure_flow(flow: Flow, labels: Labels) -> Drawn:
@@ -30,7 +30,7 @@ def figure_flow(flow: Flow, labels: Labels) -> Drawn:
     boxes = [(_step(step, labels), _those_who_left(step)) for step in flow.steps]
     total = sum(_height(text) for pair in boxes for text in pair)
     total += _GAP_INCHES * (2 * len(boxes) - 2)
-    treatment, reference = (wrapped(label, 44, lines=1) for label in labels)
+    treatment, reference = map(in_sentence, labels)
     note = f"Participants. In brackets: {treatment} + {reference}."
     with panel(total + 0.6, note) as (figure, axes):
         axes.set(xlim=(0, 1), ylim=(-total, 0))
@@ -51,28 +51,28 @@ def figure_flow(flow: Flow, labels: Labels) -> Drawn:
 
 def _step(step: Step, labels: Labels) -> str:
     """Write those who came to a step, with a line an arm where arms are known."""
-    lines = [_lines(f"{capital(step.reached.what)}: {step.reached.total:,}", _MAIN_CHARACTERS)]
+    lines = [_lines(f"{capital(step.reached.what)}: {step.reached.total:,}", _MAIN_POINTS)]
     if step.reached.arms is not None:
         for label, count in zip(labels, step.reached.arms.values(), strict=True):
-            lines.append(_lines(f"{label}: {count:,}", _MAIN_CHARACTERS))
-    lines += [_lines(f"of these {_counted(group)}", _MAIN_CHARACTERS) for group in step.of_these]
+            lines.append(_lines(f"{in_sentence(label)}: {count:,}", _MAIN_POINTS))
+    lines += [_lines(f"of these {_counted(group)}", _MAIN_POINTS) for group in step.of_these]
     return "\n".join(lines)
 
 
 def _those_who_left(step: Step) -> str:
-    return "\n".join(_lines(capital(_counted(group)), _ASIDE_CHARACTERS) for group in step.left)
+    return "\n".join(_lines(capital(_counted(group)), _ASIDE_POINTS) for group in step.left)
 
 
-def _lines(text: str, width: int) -> str:
+def _lines(text: str, width: float) -> str:
     """Break a text that must not lose its count at the end."""
-    return wrapped(text, width, lines=8)
+    return wrapped(text.replace(" + ", "\N{NO-BREAK SPACE}+\N{NO-BREAK SPACE}"), width, lines=8)
 
 
 def _counted(group: Group) -> str:
     text = f"{group.what}: {group.total:,}"
     if group.arms is None:
         return text
-    return f"{text} ({_UNBROKEN_PLUS.join(f'{count:,}' for count in group.arms.values())})"
+    return f"{text} ({' + '.join(f'{count:,}' for count in group.arms.values())})"
 
 
 def _height(text: str) -> float:

@@ -11,7 +11,8 @@ import polars as pl
 from ..errors import AnalysisError
 from ..wording import format_p
 from .drawn import Drawn
-from .style import COLOURS, FAINT, INK, SMALL_POINTS, Labels, panel, wrapped
+from .style import COLOURS, FAINT, INK, Labels, panel
+from .text import SMALL_POINTS, TEXT_POINTS, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,25 +33,30 @@ def figure_forest(
     they do not. A method without an estimate says so. Ratios (null value 1) stand on a logarithmic
     axis.
     """
+    from matplotlib.ticker import LogLocator, NullLocator
+
     unit, null = _shared_scale(results)
     data = _data(results, primary)
     decimals = _decimals(data)
     note = (
         f"Mark: estimate; bar: 95 % interval; dashed line: {null:g}, no difference; to its right: "
-        f"more with {wrapped(labels[0], 44, lines=1)}."
+        f"more with {in_sentence(labels[0])}."
         + (" Diamond, bold: the plan's primary test." if data["primary"].any() else "")
     )
     with panel(_REST_INCHES + _ROW_INCHES * len(results), note) as (figure, axes):
         if null == 1:
             axes.set_xscale("log")
+            axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_locator(NullLocator())
         axes.axvline(null, color=FAINT, linestyle="--", linewidth=1, zorder=0)
-        axes.set_yticks(range(len(results)), [wrapped(name, 24, lines=3) for name in results])
+        axes.set_yticks(range(len(results)), [wrapped(name, 120, 3, bold=True) for name in results])
         for y, (name, result) in enumerate(results.items()):
             _draw(axes, y, result, decimals, is_primary=name == primary)
             if name == primary:
                 axes.get_yticklabels()[y].set_fontweight("bold")
         axes.set_ylim(len(results) - 0.4, -0.6)
-        axes.set_xlabel(wrapped(f"{effect}, {unit}", 40))
+        axes.set_xlabel(wrapped(f"{effect}, {unit}", 220, size=TEXT_POINTS))
         axes.margins(x=0.08)
         axes.tick_params(left=False, bottom=True)
         axes.spines["left"].set_visible(False)

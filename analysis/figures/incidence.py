@@ -11,15 +11,16 @@ from ..statistics.survival import ArmIncidence, Curve, Incidence
 from .drawn import Drawn
 from .style import (
     COLOURS,
+    LEGEND_POINTS,
     LINES,
+    MARKER_POINTS,
     MARKERS,
     Labels,
-    capital,
     counts_below,
     legend_above,
     panel,
-    wrapped,
 )
+from .text import capital, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,7 +37,7 @@ def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
     band.
     """
     time_s, arms = incidence.time_s, (incidence.treatment, incidence.reference)
-    marked = np.searchsorted(time_s, np.linspace(0, time_s[-1], _TIMES))
+    marked = np.unique(np.searchsorted(time_s, np.linspace(0, time_s[-1], _TIMES)))
     note = (
         "Share of trials stopped by then, of all; band: 95 % interval at each time by itself, "
         "participants clustered. Trials watched to the end count as never stopped."
@@ -44,7 +45,7 @@ def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
     with panel(5.0, note) as (figure, axes):
         for arm, (curves, label) in enumerate(zip(arms, labels, strict=True)):
             _band(axes, time_s, curves.correct, COLOURS[arm])
-            name = wrapped(capital(label), 44, lines=1)
+            name = in_sentence(capital(label))
             for curve, line, stops in (
                 (curves.correct, LINES[arm], "correct stops"),
                 (curves.wrong, ":", "wrong stops"),
@@ -55,12 +56,14 @@ def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
                     line,
                     where="post",
                     color=COLOURS[arm],
-                    label=f"{name}: {stops}",
+                    label=wrapped(f"{name}: {stops}", LEGEND_POINTS),
                     marker=MARKERS[arm],
                     markevery=marked.tolist(),
-                    markersize=5,
+                    markersize=MARKER_POINTS[arm],
+                    clip_on=False,
                 )
         axes.set(xlim=(0, float(time_s[-1]) or 1), ylim=(0, 100))
+        axes.locator_params("x", nbins=6, steps=[1, 2, 5, 10])
         axes.set(xlabel="Motion seen, s", ylabel="Trials stopped, %")
         at_risk = (curves.at_risk[marked] for curves in arms)
         counts_below(axes, "Trials not stopped before", time_s[marked], *at_risk)

@@ -53,8 +53,6 @@ def figure_prediction_time(means: Sequence[Mean], labels: Labels) -> Drawn:
 
     A single value has no interval, and no whisker.
     """
-    from matplotlib.ticker import MaxNLocator
-
     data = pl.DataFrame(
         {
             "arm": labels,
@@ -70,7 +68,7 @@ def figure_prediction_time(means: Sequence[Mean], labels: Labels) -> Drawn:
         intervals = list(ends.iter_rows())
         _bars(axes, data["mean_s"].to_list(), intervals, "{:.2f} s")
         axes.set_ylim(0, 1.12 * max(high for _, high in intervals) or 1)
-        axes.yaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
+        axes.locator_params("y", nbins=6, steps=[1, 2, 5, 10])
         axes.set_ylabel("Time of prediction, s")
         arms_below(axes, labels, data["n_trials"].to_list())
     seen = []

@@ -62,7 +62,9 @@ class Scale:
                 f"{axis}label": f"{self.title}, {self.unit}" if self.unit else self.title,
             }
         )
-        if self.tick is not None:
+        if self.tick is None:
+            axes.locator_params(axis, nbins=6, steps=[1, 2, 5, 10])
+        else:
             axes.set(**{f"{axis}ticks": np.arange(low, high + self.tick / 2, self.tick)})
 
 
@@ -92,8 +94,8 @@ def confidence_scale(low: float, high: float) -> Scale:
         2,
         ends=(low, high),
         tick=1 if span <= 10 else span / 5,
-        # on 1 to 7, of which means of ten ratings are tenths, each bin holds three of these
-        bin=span / 20,
+        # on 1 to 7, where means of ten ratings are tenths, each bin holds five of these
+        bin=span / 12,
     )
 
 

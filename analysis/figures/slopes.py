@@ -8,7 +8,8 @@ import polars as pl
 
 from .drawn import Drawn
 from .scales import Scale
-from .style import COLOURS, FAINT, INK, LINES, Labels, legend_above, panel, wrapped
+from .style import COLOURS, FAINT, INK, LEGEND_POINTS, LINES, Labels, legend_above, panel
+from .text import TEXT_POINTS, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,7 +36,9 @@ def figure_slopes(trials: pl.DataFrame, scale: Scale, labels: Labels) -> Drawn:
         both = means.select("reference", "treatment").to_numpy()
         scale.mark(axes, "y", float(both.max(initial=0.0)))
         axes.set_xticks(
-            (0, 1), [wrapped(label, 22, lines=3) for label in reversed(labels)], fontsize=10
+            (0, 1),
+            [wrapped(label, 140, 3, TEXT_POINTS) for label in reversed(labels)],
+            fontsize=TEXT_POINTS,
         )
         axes.set_xlim(-0.35, 1.35)
         axes.grid(visible=False)
@@ -71,8 +74,8 @@ def _lines(axes: Axes, means: pl.DataFrame, labels: Labels) -> list[tuple[str, i
     """Draw the scenarios by direction; return each direction in words with its count."""
     kinds = []
     for words, sign, colour, line in (
-        (f"higher with {labels[0]}", 1, COLOURS[0], LINES[0]),
-        (f"higher with {labels[1]}", -1, COLOURS[1], LINES[1]),
+        (f"higher with {in_sentence(labels[0])}", 1, COLOURS[0], LINES[0]),
+        (f"higher with {in_sentence(labels[1])}", -1, COLOURS[1], LINES[1]),
         ("equal", 0, FAINT, ":"),
     ):
         own = means.filter(pl.col("difference").sign() == sign)
@@ -85,7 +88,7 @@ def _lines(axes: Axes, means: pl.DataFrame, labels: Labels) -> list[tuple[str, i
             marker=".",
             markersize=4,
         )
-        counted = wrapped(f"{words}: {len(own)} of {len(means)} scenarios", 54, lines=3)
+        counted = wrapped(f"{words}: {len(own)} of {len(means)} scenarios", LEGEND_POINTS)
         axes.plot([], [], line, color=colour, linewidth=1.6, label=counted)
         kinds.append((words, len(own)))
     return kinds

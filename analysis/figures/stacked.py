@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from .drawn import Drawn
 from .scales import CONFIDENCE, Scale
-from .style import INK, SMALL_POINTS, Labels, arm_above, legend_above, panel
+from .style import INK, Labels, arm_above, legend_above, panel
+from .text import SMALL_POINTS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,13 +7,14 @@ grey. Drawn without pyplot: nothing global is touched.
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from .text import FONT, SMALL_POINTS, TEXT_POINTS, capital, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,18 +27,21 @@ COLOURS = ("#0072B2", "#E69F00")
 """Of the treatment and the reference arm: blue and orange of Okabe and Ito, told apart with every
 kind of colour vision, and in grey."""
 MARKERS = ("o", "s")
+MARKER_POINTS = (6.5, 4.5)
+"""So that a mark of the reference arm does not hide one of the treatment arm under it."""
 GLYPHS = ("●", "■")
 """The markers as text."""
 LINES = ("-", "--")
 
+LEGEND_POINTS = 310
+"""Width of a line of the legend."""
+
 INK = "#222222"
 FAINT = "#767676"
 WIDTH_INCHES = 5.0
-TEXT_POINTS = 10
-SMALL_POINTS = 9
 
 STYLE: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
+    "font.family": FONT,
     "font.size": TEXT_POINTS,
     "xtick.labelsize": SMALL_POINTS,
     "ytick.labelsize": SMALL_POINTS,
@@ -48,6 +52,7 @@ STYLE: dict[Any, Any] = {
     "axes.edgecolor": INK,
     "axes.labelcolor": INK,
     "text.color": INK,
+    "text.parse_math": False,
     "xtick.color": INK,
     "ytick.color": INK,
     "axes.spines.top": False,
@@ -72,7 +77,7 @@ def panel(height_inches: float, note: str) -> Iterator[tuple[Figure, Axes]]:
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH_INCHES, height_inches), layout="constrained")
         figure.supxlabel(
-            wrapped(note, 62, lines=5),
+            wrapped(note, 340, lines=6),
             x=0.02,
             ha="left",
             multialignment="left",
@@ -82,23 +87,10 @@ def panel(height_inches: float, note: str) -> Iterator[tuple[Figure, Axes]]:
         yield figure, figure.add_subplot()
 
 
-def wrapped(text: str, width: int, lines: int = 2) -> str:
-    """Break a text into lines of at most `width` characters; what does not fit ends in an ellipsis.
-
-    Words longer than a line are broken.
-    """
-    return textwrap.fill(text, width, max_lines=lines, placeholder=" …")
-
-
-def capital(label: str) -> str:
-    """Write a label as the beginning of a line."""
-    return label[:1].upper() + label[1:]
-
-
 def arms_below(axes: Axes, labels: Labels, n: Sequence[int]) -> None:
     """Write each arm with its number of trials below the x axis, at 0 and 1."""
     names = [
-        f"{wrapped(capital(label), 22, lines=3)}\nn = {count:,} trials"
+        f"{wrapped(capital(label), 140, 3, TEXT_POINTS)}\nn = {count:,} trials"
         for label, count in zip(labels, n, strict=True)
     ]
     axes.set_xticks(range(len(n)), names, fontsize=TEXT_POINTS)
@@ -112,7 +104,7 @@ def arm_above(axes: Axes, y: float, label: str, numbers: str = "") -> None:
         "xycoords": ("axes fraction", "data"),
         "textcoords": "offset points",
     }
-    name = wrapped(capital(label), 44, lines=1)
+    name = wrapped(capital(label), 265, 1, TEXT_POINTS, bold=True)
     axes.annotate(name, xytext=(0, 15 if numbers else 3), fontweight="bold", **at)
     axes.annotate(numbers, xytext=(0, 3), fontsize=SMALL_POINTS, **at)
 
@@ -124,14 +116,14 @@ def counts_below(
     xs, below = np.asarray(x, dtype=float), -34
     at: dict[str, Any] = {"textcoords": "offset points", "va": "top", "fontsize": SMALL_POINTS}
     corner = ("axes fraction", "axes fraction")
-    axes.annotate(heading, (0, 0), xycoords=corner, xytext=(-14, below), color=FAINT, **at)
+    axes.annotate(heading, (0, 0), xycoords=corner, xytext=(-24, below), color=FAINT, **at)
     for arm, counts in enumerate((treatment, reference)):
         below -= 13
         axes.annotate(
             GLYPHS[arm],
             (0, 0),
             xycoords=corner,
-            xytext=(-18, below),
+            xytext=(-30, below),
             ha="right",
             color=COLOURS[arm],
             **at,
@@ -175,3 +167,6 @@ def boxes(axes: Axes, values: Sequence[ArrayLike], positions: Sequence[float], *
     )
     for colour, box in zip(COLOURS, drawn["boxes"], strict=True):
         box.set_facecolor(colour)
+    for rings in drawn["fliers"]:
+        # thousands of equal values would be as many rings in the file
+        rings.set_data(*np.unique(rings.get_data(), axis=1))

@@ -3,11 +3,10 @@
 import matplotlib
 import numpy as np
 import polars as pl
-import pytest
 from matplotlib.colors import to_rgb
 
 from analysis.figures import COLOURS, Drawn, write_figure
-from analysis.figures.style import panel, wrapped
+from analysis.figures.style import panel
 
 
 def a_figure():
@@ -45,17 +44,13 @@ def test_the_vector_file_needs_no_font(tmp_path):
     assert "<text" not in (tmp_path / "line.svg").read_text()
 
 
+def test_dollars_in_a_label_are_no_mathematics():
+    with panel(2.0, "from $5 to $10") as (figure, axes):
+        axes.set_ylabel("from $5 to $10")
+    assert not axes.yaxis.label.get_parse_math()
+    assert not any(text.get_parse_math() for text in figure.texts)
+
+
 def test_the_two_colours_differ_in_lightness_as_well():
     lightness = [np.dot(to_rgb(each), (0.2126, 0.7152, 0.0722)) for each in COLOURS]
     assert abs(lightness[0] - lightness[1]) > 0.2
-
-
-@pytest.mark.parametrize("text", ["word " * 30, "w" * 200, "short"])
-def test_a_text_never_exceeds_its_lines(text):
-    lines = wrapped(text, 22, lines=3).split("\n")
-    assert len(lines) <= 3
-    assert max(map(len, lines)) <= 22
-
-
-def test_what_does_not_fit_ends_in_an_ellipsis():
-    assert wrapped("one two three four", 9, lines=1) == "one two …"
