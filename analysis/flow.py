@@ -57,29 +57,29 @@ def participant_flow(
     `trials` are those of both arms before exclusions; `others` counts the participants with
     trials of each further condition.
     """
-    people, incomplete = completion(trials, participants)
+    people, _ = completion(trials, participants)
     if participants is None:
         before = _before_by_trials(people, others)
-        finished = f"did not have {incomplete}"
+        finished = "answered as many trials as anyone"
     else:
         before = _before_by_table(arms, people, participants)
         finished = "completed the study"
-    out = [pl.Series(each.participants, dtype=pl.String) for each in excluded]
+    out = [name for each in excluded for name in each.participants]
+    kept = people.filter(~pl.col("participant").is_in(out))
     answered = Step(
         _group("answered a trial", people, arms),
-        tuple(
-            _group(each.exclusion.reason, people.filter(pl.col("participant").is_in(names)), arms)
-            for each, names in zip(excluded, out, strict=True)
-        ),
-        (_group(finished, people.filter("done"), arms),),
+        left=tuple(_taken(each, people, arms) for each in excluded),
+        of_these=(_group(finished, people.filter("done"), arms),),
     )
-    kept = people
-    for names in out:
-        kept = kept.filter(~pl.col("participant").is_in(names))
     analysed = Step(
         _group("analysed", kept, arms), of_these=(_group(finished, kept.filter("done"), arms),)
     )
     return Flow((*before, answered, analysed))
+
+
+def _taken(excluded: Excluded, people: pl.DataFrame, arms: Arms) -> Group:
+    own = people.filter(pl.col("participant").is_in(excluded.participants))
+    return _group(excluded.exclusion.reason, own, arms)
 
 
 def _before_by_trials(people: pl.DataFrame, others: Mapping[str, int]) -> list[Step]:
@@ -90,7 +90,7 @@ def _before_by_trials(people: pl.DataFrame, others: Mapping[str, int]) -> list[S
 
 
 def _before_by_table(arms: Arms, people: pl.DataFrame, participants: pl.DataFrame) -> list[Step]:
-    has_trials = pl.col("participant").is_in(people["participant"].implode())
+    has_trials = pl.col("participant").is_in(people["participant"].to_list())
     is_dealt = pl.col("condition").is_in(arms.names).fill_null(value=False)
     dealt = participants.filter(is_dealt)
     has_played = pl.col("first_played_at").is_not_null() | has_trials

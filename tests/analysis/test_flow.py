@@ -97,11 +97,13 @@ def test_exclusions_are_told_rule_by_rule_even_if_they_took_nobody(study, tmp_pa
     assert analysed.reached.arms == {"polmdp": 2, "optimal": 3}
 
 
-def test_a_single_table_of_trials_begins_with_the_answers(paper_fixture):
-    assert told(read_dataset(paper_fixture).flow) == [
-        ("answered a trial", 150, {}),
-        ("analysed", 150, {}),
-    ]
+def test_a_single_table_of_trials_begins_with_the_answers(tmp_path):
+    path = write_table(TRIALS, six_participants()[:-1], tmp_path)[0]
+    flow = read_dataset(path).flow
+    assert told(flow) == [("answered a trial", 6, {}), ("analysed", 6, {})]
+    (finished,) = flow.steps[-1].of_these
+    assert finished.what == "answered as many trials as anyone"
+    assert finished.arms == {"polmdp": 3, "optimal": 2}
 
 
 PEOPLE = st.lists(

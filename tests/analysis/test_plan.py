@@ -48,6 +48,11 @@ def test_a_condition_without_a_label_is_called_by_its_name(plan_of):
     assert plan.arms.labels == {"legible": "legible", "shortest": "shortest"}
 
 
+def test_the_least_that_may_be_said_is_allowed(plan_of):
+    plan = plan_of("seed = 0\nchoices = 2\ntrials_per_participant = 1")
+    assert (plan.seed, plan.choices, plan.trials_per_participant) == (0, 2, 1)
+
+
 def test_time_as_pressed_is_another_measure(plan_of):
     plan = plan_of('time = "stop"')
     assert plan.primary[1].measure == "stop_time_s"
