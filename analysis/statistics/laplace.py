@@ -79,6 +79,8 @@ class CrossedLikelihood:
         mode = self._mode
         covariances = np.einsum("g,fgn->fn", sds, precision.covariances())
         variance = sds @ covariances
+        # The modes move with the parameters, and the log-determinant with the modes: tilt is its
+        # derivative by the modes, carried back through the equation that defines them.
         tilt = precision.solve(scale * self.crossing.sums(variance * bounds.curvature.sum(axis=0)))
         shift = self.crossing.totals(scale * tilt)
         score = bounds.score + (variance * bounds.curvature - shift * bounds.density) / 2

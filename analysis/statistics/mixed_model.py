@@ -1,7 +1,7 @@
 """Correct guesses by a logistic mixed model with crossed participants and scenarios.
 
 Own code: of the packages tried, mixedlm agrees with R on the estimates but not on the standard
-error (it leaves out that variances are estimated), gpboost on neither within 1e-3, and
+error (it leaves out that variances are estimated), gpboost on neither to three digits, and
 statsmodels' BinomialBayesMixedGLM is a Bayesian approximation to another model.
 """
 
@@ -81,7 +81,7 @@ def _risk_difference(fit: CrossedFit) -> tuple[float, float]:
     gradient = np.concatenate(
         [
             [by_location[1] - by_location[0], by_location.mean()],
-            (by_sd[1] - by_sd[0]) * fit.sds / sd if sd > 0 else np.zeros(len(fit.sds)),
+            (by_sd[1] - by_sd[0]) * (fit.sds / sd if sd > 0 else fit.sds),
         ]
     )
     reference, treatment = shares @ weights

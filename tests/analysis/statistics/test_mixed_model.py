@@ -268,6 +268,16 @@ def test_a_factor_that_trials_cannot_tell_is_left_out():
     assert "scenarios_not_shared" in apart.warnings
 
 
+def test_without_any_factor_the_risk_difference_is_that_of_the_shares():
+    data = made(13)
+    nothing = np.zeros_like(data.scenario)
+    alone = dataclasses.replace(data, participant=np.arange(len(data.y)), scenario=nothing)
+    found = crossed_logistic(alone)
+    shares = [data.y[arm].mean() for arm in (data.treated, ~data.treated)]
+    assert found.risk_difference == pytest.approx(shares[0] - shares[1], abs=1e-7)
+    assert found.warnings == ("single_trials", "one_scenario")
+
+
 def test_few_clusters_are_told():
     assert "few_clusters" in crossed_logistic(made(14, participants=12)).warnings
     assert "few_clusters" not in crossed_logistic(made(14)).warnings
