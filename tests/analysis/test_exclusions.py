@@ -15,6 +15,16 @@ from analysis import (
 from analysis.exclusions import RULES
 from tests.analysis.rows import as_csv, participants_of, six_participants
 
+KEPT = (
+    "participant",
+    "condition",
+    "scenario",
+    "trial_index",
+    "correct",
+    "stop_time_s",
+    "length_s",
+    "confidence",
+)
 RULE = '[[exclusions]]\nrule = "{}"\n'
 
 
@@ -57,6 +67,8 @@ def only_p2_repeats_a_guess(rows):
     for row in rows:
         if row["participant"] != "P2" and row["trial_index"] == 1:
             row |= {"guess": "C", "correct": False, "score": 0.0, "prediction_time_s": 20.0}
+    for row in trials_of(rows, "P3")[1:]:
+        rows.remove(row)
 
 
 def motionless(rows):
@@ -142,6 +154,15 @@ def test_the_reason_tells_the_parameter(taken_by):
     assert data.excluded[0].exclusion.reason == "paused for more than 60 s in all"
 
 
+def test_missing_guesses_are_not_the_same_guess(tmp_path):
+    rows = [{name: row[name] for name in KEPT} for row in six_participants()]
+    for row in rows:
+        row["guess"] = None if row["participant"] == "P2" else "ABC"[row["trial_index"] - 1]
+    (tmp_path / "mine.toml").write_text(RULE.format("same_guess"))
+    data = read_dataset(as_csv(tmp_path / "t.csv", rows), read_plan(tmp_path / "mine.toml"))
+    assert names(data) == [()]
+
+
 def test_an_arm_that_exclusions_empty_is_one_clear_error(taken_by):
     with pytest.raises(EmptyArmError, match=r"polmdp: .* \(6 participants excluded by the plan\)"):
         taken_by(RULE.format("incomplete") + "fewer_than = 4", lambda _rows: None)
@@ -155,11 +176,7 @@ def test_an_arm_that_exclusions_empty_is_one_clear_error(taken_by):
     ],
 )
 def test_a_rule_without_its_column_is_named_by_its_place_in_the_plan(tmp_path, rule, missing):
-    kept = ("participant", "condition", "scenario", "trial_index", "correct", "stop_time_s")
-    rows = [
-        {name: row[name] for name in (*kept, "length_s", "confidence")}
-        for row in six_participants()
-    ]
+    rows = [{name: row[name] for name in KEPT} for row in six_participants()]
     parameters = "tries_above = 1" if rule == "failed_control_question" else ""
     (tmp_path / "mine.toml").write_text(RULE.format("same_guess") + RULE.format(rule) + parameters)
     rows = [row | {"guess": "A"} for row in rows]

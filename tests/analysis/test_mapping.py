@@ -47,6 +47,7 @@ def foreign_rows():
             "correct": row["correct"],
             "confidence": 14 * row["confidence"],
             "condition": "daylight",
+            "video": "high definition",
         }
         for row in six_participants()
     ]
@@ -169,6 +170,7 @@ def test_of_three_conditions_the_plan_names_the_two_compared(tmp_path, plan_of):
         for row in foreign_rows()
     ]
     for row in rows:
+        del row["video"]
         row["condition"] = {"P1": "red", "P2": "red", "P3": "blue"}.get(row["subject"], "green")
     path = as_csv(tmp_path / "three.csv", rows)
     plan = plan_of('treatment.condition = "green"\nreference.condition = "red"')
