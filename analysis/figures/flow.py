@@ -19,6 +19,7 @@ _LINE_INCHES = 0.17
 _PADDING_INCHES = 0.16
 _GAP_INCHES = 0.13
 _MAIN, _ASIDE = (0.0, 0.52), (0.57, 1.0)
+_GLUE = "\N{NO-BREAK SPACE}"
 _MAIN_POINTS, _ASIDE_POINTS = 162, 130
 
 
@@ -64,8 +65,8 @@ def _those_who_left(step: Step) -> str:
 
 
 def _lines(text: str, width: float) -> str:
-    """Break a text that must not lose its count at the end."""
-    return wrapped(text.replace(" + ", "\N{NO-BREAK SPACE}+\N{NO-BREAK SPACE}"), width, lines=8)
+    """Break a text that must not lose its count at the end, nor have it alone in a line."""
+    return wrapped(text.replace(" + ", f"{_GLUE}+{_GLUE}").replace(": ", f":{_GLUE}"), width, 8)
 
 
 def _counted(group: Group) -> str:

@@ -35,8 +35,8 @@ def test_steps_and_those_who_left_stand_in_order():
         "Screened out: 3",
         "Dealt a place: 1,037\nPoLMDP: 519\noptimal: 518",
         "Never began a trial: 1\n(0 + 1)",
-        "Analysed: 1,036\nPoLMDP: 519\noptimal: 517\nof these completed the study:\n"
-        "1,030 (515 + 515)",
+        "Analysed: 1,036\nPoLMDP: 519\noptimal: 517\nof these completed the\n"
+        "study: 1,030 (515 + 515)",
     ]
 
 

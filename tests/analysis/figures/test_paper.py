@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis import TRIALS, analyse_path, write_table
-from analysis.as_in_paper import values_of
+from analysis import TRIALS, read_dataset, write_table
+from analysis.as_in_paper import as_in_paper, values_of
 from analysis.contract import CONDITIONS
 from analysis.figures import (
     confidence_scale,
@@ -19,9 +19,15 @@ LABELS = ("PoLMDP", "optimal")
 
 
 @pytest.fixture(scope="module")
-def paper(paper_fixture):
-    """Results of the synthetic trials."""
-    return analyse_path(paper_fixture)
+def data(paper_fixture):
+    """The synthetic trials."""
+    return read_dataset(paper_fixture)
+
+
+@pytest.fixture(scope="module")
+def block(data):
+    """Their statistics."""
+    return as_in_paper(data)
 
 
 def correct(block):
@@ -43,31 +49,31 @@ def interval_of(axes):
     return ends, [bar.get_height() for bar in axes.patches]
 
 
-def test_correct_guesses_are_shown_from_0_to_100_percent(paper):
-    axes = axes_of(correct(paper.block))
+def test_correct_guesses_are_shown_from_0_to_100_percent(block):
+    axes = axes_of(correct(block))
     assert axes.get_ylim() == (0, 100)
     assert axes.get_ylabel() == "Correct guesses, %"
 
 
-def test_correct_guesses_stand_with_their_interval(paper):
-    ends, heights = interval_of(axes_of(correct(paper.block)))
-    shares = list(paper.block.correct.arms.values())
+def test_correct_guesses_stand_with_their_interval(block):
+    ends, heights = interval_of(axes_of(correct(block)))
+    shares = list(block.correct.arms.values())
     assert heights == pytest.approx([100 * each.share for each in shares])
     for (low, high), each in zip(ends, shares, strict=True):
         assert (low, high) == pytest.approx((100 * each.low, 100 * each.high))
 
 
-def test_time_starts_at_zero_and_has_room_for_the_interval(paper):
-    axes = axes_of(prediction_time(paper.block))
+def test_time_starts_at_zero_and_has_room_for_the_interval(block):
+    axes = axes_of(prediction_time(block))
     low, high = axes.get_ylim()
     assert low == 0
-    assert high > max(each.high for each in paper.block.prediction_time.arms.values())
+    assert high > max(each.high for each in block.prediction_time.arms.values())
     assert axes.get_ylabel() == "Time of prediction, s"
 
 
-def test_mean_times_stand_with_their_interval(paper):
-    ends, heights = interval_of(axes_of(prediction_time(paper.block)))
-    means = list(paper.block.prediction_time.arms.values())
+def test_mean_times_stand_with_their_interval(block):
+    ends, heights = interval_of(axes_of(prediction_time(block)))
+    means = list(block.prediction_time.arms.values())
     assert heights == pytest.approx([each.mean for each in means])
     for (low, high), each in zip(ends, means, strict=True):
         assert (low, high) == pytest.approx((each.low, each.high))
@@ -82,8 +88,8 @@ def test_confidence_shows_the_whole_scale():
     ]
 
 
-def test_confidence_marks_the_mean_by_a_dot_and_the_median_by_a_thick_line(paper):
-    values = [values_of(paper.data, arm, "confidence") for arm in CONDITIONS]
+def test_confidence_marks_the_mean_by_a_dot_and_the_median_by_a_thick_line(data):
+    values = [values_of(data, arm, "confidence") for arm in CONDITIONS]
     axes = axes_of(figure_confidence(values, LABELS))
     dots = [
         float(line.get_ydata()[0])
@@ -95,8 +101,8 @@ def test_confidence_marks_the_mean_by_a_dot_and_the_median_by_a_thick_line(paper
     assert thick == [np.median(each) for each in values]
 
 
-def test_every_figure_says_how_many_trials_it_shows(paper):
-    for drawn in (correct(paper.block), prediction_time(paper.block)):
+def test_every_figure_says_how_many_trials_it_shows(block):
+    for drawn in (correct(block), prediction_time(block)):
         labels = [label.get_text() for label in axes_of(drawn).get_xticklabels()]
         assert labels == ["PoLMDP\nn = 980 trials", "Optimal\nn = 520 trials"]
 
@@ -113,7 +119,7 @@ def test_next_to_no_data_can_be_drawn(tmp_path):
         trial_row("P1", 1, "polmdp", stop_time_s=0.0),
         trial_row("P2", 1, "optimal", stop_time_s=0.0),
     ]
-    block = analyse_path(write_table(TRIALS, rows, tmp_path)[0]).block
+    block = as_in_paper(read_dataset(write_table(TRIALS, rows, tmp_path)[0]))
     write_figure(correct(block), tmp_path, "correct")
     write_figure(prediction_time(block), tmp_path, "time")
     assert (tmp_path / "correct.svg").stat().st_size > 0
@@ -122,15 +128,13 @@ def test_next_to_no_data_can_be_drawn(tmp_path):
 
 def test_a_single_trial_has_no_interval_in_words_and_in_data(tmp_path):
     rows = [trial_row("P1", 1, "polmdp"), trial_row("P2", 1, "optimal")]
-    drawn = prediction_time(analyse_path(write_table(TRIALS, rows, tmp_path)[0]).block)
+    drawn = prediction_time(as_in_paper(read_dataset(write_table(TRIALS, rows, tmp_path)[0])))
     assert drawn.data["low_s"].to_list() == [None, None]
     assert "interval not defined" in drawn.alt
 
 
-def test_the_paper_s_numbers_are_told_to_who_does_not_see_them(paper):
-    assert (
-        "PoLMDP 84.9 % (95 % interval 82.5 to 87.0 %, n = 980 trials)" in correct(paper.block).alt
-    )
-    assert "optimal 18.22 s (95 % interval 17.77 to 18.67 s" in prediction_time(paper.block).alt
-    values = [values_of(paper.data, arm, "confidence") for arm in CONDITIONS]
+def test_the_paper_s_numbers_are_told_to_who_does_not_see_them(data, block):
+    assert "PoLMDP 84.9 % (95 % interval 82.5 to 87.0 %, n = 980 trials)" in correct(block).alt
+    assert "optimal 18.22 s (95 % interval 17.77 to 18.67 s" in prediction_time(block).alt
+    values = [values_of(data, arm, "confidence") for arm in CONDITIONS]
     assert "PoLMDP mean 6.08, median 7" in figure_confidence(values, LABELS).alt

@@ -1,6 +1,7 @@
 """Every figure can be read: at a column's width, with long labels, many trials, or next to none."""
 
 from collections.abc import Callable
+from functools import cache
 from itertools import combinations
 
 import numpy as np
@@ -146,15 +147,16 @@ FIGURES: dict[str, Callable[[pl.DataFrame, Labels], Drawn]] = {
 }
 
 
-@pytest.fixture(params=STUDIES, scope="module")
-def study(request):
-    return STUDIES[request.param]
+@cache
+def draw(name: str, study: str) -> Drawn:
+    return FIGURES[name](*STUDIES[study])
 
 
+@pytest.mark.parametrize("study", STUDIES)
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_can_be_read_in_a_narrow_column_and_nothing_overlaps_or_is_cut(name, study):
-    drawn = FIGURES[name](*study)
-    figure, written = drawn.figure, list(texts(drawn.figure))
+    figure = draw(name, study).figure
+    written = list(texts(figure))
     shrunk = COLUMN_INCHES / figure.get_figwidth()
     assert min(float(text.get_fontsize()) for text in written) * shrunk >= SMALLEST_POINTS
     places = [(text.get_text(), text.get_window_extent().padded(-1)) for text in written]
@@ -169,7 +171,7 @@ def test_a_figure_can_be_read_in_a_narrow_column_and_nothing_overlaps_or_is_cut(
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_comes_with_words_and_numbers(name):
-    drawn = FIGURES[name](*STUDIES["all values equal"])
+    drawn = draw(name, "all values equal")
     assert drawn.alt.endswith(".")
     assert any(character.isdigit() for character in drawn.alt)
     if name != "forest":
