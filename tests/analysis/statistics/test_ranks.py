@@ -238,3 +238,24 @@ def test_without_ties_the_exact_p_is_scipys():
 def test_from_50_values_in_an_arm_there_is_no_exact_p():
     assert mann_whitney(range(49), range(49)).p_exact is not None
     assert mann_whitney(range(50), range(3)).p_exact is None
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_with_ties_the_interval_holds_the_shifts_between_levels_that_are_not_rejected(seed):
+    x, y = np.random.default_rng(seed).integers(1, 8, size=(2, 60)) * 1.0
+    y = np.minimum(y + seed % 3, 7)
+    found = hodges_lehmann(x, y)
+    assert found.low is not None
+    assert found.high is not None
+    between = np.arange(-6.5, 7)
+    kept = [
+        shift
+        for shift in between
+        if stats.mannwhitneyu(x - shift, y, use_continuity=False, method="asymptotic").pvalue > 0.05
+    ]
+    assert kept == [shift for shift in between if found.low < shift < found.high]
+
+
+def test_a_million_equal_values_have_no_statistic_either():
+    test = mann_whitney(np.full(600_001, 7.0), np.full(400_000, 7.0))
+    assert (test.sd, test.statistic, test.p) == (0, None, 1)
