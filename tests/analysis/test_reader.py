@@ -191,11 +191,11 @@ def test_a_broken_rule_of_the_trials_is_named_by_row_and_column(export, row, col
 @pytest.mark.parametrize("number", [math.inf, math.nan])
 def test_a_number_of_parquet_that_is_none_is_named(export, number):
     frame = pl.read_parquet(export / "trials.parquet")
-    times = frame["stop_time_s"].to_list()
+    times = frame["guess_latency_s"].to_list()
     times[2] = number
-    frame.with_columns(stop_time_s=pl.Series(times)).write_parquet(export / "trials.parquet")
+    frame.with_columns(guess_latency_s=pl.Series(times)).write_parquet(export / "trials.parquet")
     error = complaint(export / "trials.parquet")
-    assert (error.row, error.column) == (4, "stop_time_s")
+    assert (error.row, error.column) == (4, "guess_latency_s")
 
 
 def test_rules_bind_simulated_rows_too_because_the_file_is_one(export):
