@@ -23,21 +23,25 @@ def power(
     measure: Annotated[
         str, typer.Option(metavar="correct|confidence", help="What the arms are compared in.")
     ] = "correct",
-    p1: Annotated[float, typer.Option(help="Share correct of the treatment arm.")] = 0.85,
-    p2: Annotated[float, typer.Option(help="Share correct of the reference arm.")] = 0.70,
+    p1: Annotated[
+        float, typer.Option(help="Share correct in the treatment arm, for correct.")
+    ] = 0.85,
+    p2: Annotated[
+        float, typer.Option(help="Share correct in the reference arm, for correct.")
+    ] = 0.70,
     auc: Annotated[
-        float, typer.Option(help="Chance of more confidence in the treatment arm, ties half.")
+        float, typer.Option(help="Chance of more in the treatment arm, ties half, for confidence.")
     ] = 0.546,
     sds: Annotated[
         str, typer.Option(help="SDs of participant/scenario/scenario x condition, in logits.")
     ] = ".8/.8/.4",
     tests: Annotated[
-        str, typer.Option(metavar="two_way,mixed", help="Tests; mixed is of correct guesses only.")
+        str, typer.Option(metavar="two_way,mixed", help="Which tests; mixed is for correct only.")
     ] = "two_way",
     participants: Annotated[
         str | None,
         typer.Option(
-            metavar="N,N,...", help="Both arms together; without it, those for 80 and 90 % power."
+            metavar="N,N,...", help="Both arms together; without it, looks for 80 and 90 %."
         ),
     ] = None,
     trials: Annotated[int, typer.Option(help="Trials of each participant.")] = 10,
@@ -49,10 +53,11 @@ def power(
         Path | None, typer.Option(metavar="DIR", help="Write power.json, .csv, .svg and .png here.")
     ] = None,
 ) -> None:
-    """Simulate studies, run the report's primary tests on them, and count how often they find.
+    """Say how many participants a study needs: simulate it and count how often tests find.
 
-    Trials come from participants crossed with scenarios, on the logit scale; p1 and p2, or auc,
-    hold over all people and scenarios together.
+    The tests are the report's own. Trials come from participants crossed with scenarios, on the
+    logit scale; p1 and p2, or auc, hold over all people and scenarios together. The mixed model
+    takes a hundred times as long as the two-way test.
 
     Example: goalguess power --p1 .80 --p2 .70 --participants 80,120,160 --to power
     """

@@ -42,7 +42,7 @@ def figure_power(power: Power) -> Drawn:
             axes.axhline(100 * target, color=FAINT, linestyle=":", linewidth=1.2)
         axes.set_ylim(0, 102)
         axes.set_yticks(range(0, 101, 20))
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.xaxis.set_major_locator(MaxNLocator(steps=[1, 2, 5, 10], integer=True))
         axes.set_xlabel("Participants, both arms")
         axes.set_ylabel("Power, %")
         legend_above(figure, axes)

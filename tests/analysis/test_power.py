@@ -11,7 +11,7 @@ from analysis import AnalysisError
 from analysis.__main__ import alone
 from analysis.crossed_model import Spread, confidence_model, correct_model
 from analysis.figures.power import figure_power
-from analysis.power import LARGEST, PowerQuestion, power_at, search_power
+from analysis.power import PowerQuestion, power_at, search_power
 from analysis.power_curve import PowerCurve, fit_power
 from analysis.statistics.estimates import share
 
@@ -72,6 +72,11 @@ def test_the_seed_and_not_the_number_of_workers_decides_the_numbers():
     assert one != other
 
 
+def test_a_study_too_small_for_the_test_is_counted_as_undefined_and_finds_nothing():
+    (point,) = power_at(question(studies=5), [2], 1, tell_nobody).points
+    assert (point.result.rejected.count, point.result.undefined) == (0, 5)
+
+
 def test_progress_is_told_study_by_study():
     told: list[int] = []
     power_at(question(studies=45), [20, 30], 1, told.append)
@@ -121,11 +126,11 @@ def test_the_search_ends_at_numbers_that_have_the_power():
         assert exact[nearest].share == pytest.approx(power, abs=0.1)
 
 
-def test_a_search_in_vain_ends_and_says_so(monkeypatch):
+@pytest.mark.parametrize("treatment", [0.7, 0.8])
+def test_a_search_does_not_go_beyond_the_largest_number_and_says_so(monkeypatch, treatment):
     monkeypatch.setattr("analysis.power.LARGEST", 40)
-    assert LARGEST > 40
-    none = correct_model(SPREAD, 0.8, 0.8)
-    found = search_power(question(none, studies=40), 1, tell_nobody)
+    weak = correct_model(SPREAD, treatment, 0.7)
+    found = search_power(question(weak, studies=400), 1, tell_nobody)
     assert [each.participants for each in found.needed] == [None, None]
     assert [point.participants for point in found.points] == [20, 40]
 
