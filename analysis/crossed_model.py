@@ -29,7 +29,9 @@ CONFIDENCE_AUC = 0.546
 """Chance that a trial of the treatment arm has the higher confidence, ties half: the paper's U."""
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(81)
-_WIDEST = 50.0
+_LARGEST_SD = 5.0
+"""Up to it 81 nodes integrate a share to five digits."""
+_FARTHEST = 50.0
 
 
 @dataclass(frozen=True)
@@ -42,9 +44,9 @@ class Spread:
 
     def __post_init__(self) -> None:
         for sd in (self.participant, self.scenario, self.scenario_condition):
-            if not 0 <= sd <= _WIDEST / 10:
+            if not 0 <= sd <= _LARGEST_SD:
                 raise AnalysisError(
-                    f"standard deviation: expected 0 to {_WIDEST / 10:g} on the logit scale, "
+                    f"standard deviation: expected 0 to {_LARGEST_SD:g} on the logit scale, "
                     f"got {sd:g}"
                 )
 
@@ -115,7 +117,7 @@ def confidence_model(spread: Spread, auc: float = CONFIDENCE_AUC) -> CrossedMode
     def surplus(shift: float) -> float:
         return _auc(_shares(thresholds - shift, spread.total), reference) - auc
 
-    shift = optimize.brentq(surplus, -_WIDEST, _WIDEST)
+    shift = optimize.brentq(surplus, -_FARTHEST, _FARTHEST)
     return CrossedModel("confidence", "points", 1, tuple(thresholds.tolist()), shift, spread)
 
 
@@ -172,7 +174,7 @@ def _threshold(share_above: float, sd: float) -> float:
     from scipy import optimize
 
     root: float = optimize.brentq(
-        lambda threshold: float(_share_above(threshold, sd)) - share_above, -_WIDEST, _WIDEST
+        lambda threshold: float(_share_above(threshold, sd)) - share_above, -_FARTHEST, _FARTHEST
     )
     return root
 

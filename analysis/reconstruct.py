@@ -93,13 +93,14 @@ class _Arms(NamedTuple):
 
 def printed(name: str, text: str) -> Printed:
     """Read a figure with its digits, as in ".70", which is .695 to .705; AnalysisError if none."""
+    refusal = f"{name}: expected a number from 0 as it is printed, got {text!r}"
     try:
         number = Decimal(text)
         digits = -int(number.as_tuple().exponent)
-    except (InvalidOperation, ValueError):
-        digits, number = -1, Decimal(0)
+    except (InvalidOperation, ValueError) as error:
+        raise AnalysisError(refusal) from error
     if not 0 <= digits <= 9 or not 0 <= number < 10**6:
-        raise AnalysisError(f"{name}: expected a number from 0 as it is printed, got {text!r}")
+        raise AnalysisError(refusal)
     return Printed(text, int(number.scaleb(digits)), 10**digits)
 
 
