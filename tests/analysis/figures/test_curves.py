@@ -54,7 +54,7 @@ def accuracy(level, n, n_correct):
     return Accuracy(
         lower=level,
         upper=level,
-        mean=float(level) if n else None,
+        mean=level + 0.25 if n else None,
         n=n,
         n_correct=n_correct,
         n_participants=n,
@@ -92,6 +92,6 @@ def test_calibration_writes_the_trials_of_each_level_below_it():
 
 def test_accuracy_by_time_stands_at_the_mean_time_of_its_trials():
     drawn = figure_accuracy_by_time(BY, LABELS, 1 / 6)
-    assert np.asarray(drawn.figure.axes[0].lines[0].get_xdata()).tolist() == [2, 3]
-    assert "PoLMDP 50 % at 2 s, 100 % at 3 s; optimal 0 % at 1 s, 80 % at 3 s" in drawn.alt
+    assert np.asarray(drawn.figure.axes[0].lines[0].get_xdata()).tolist() == [2.25, 3.25]
+    assert "PoLMDP 50 % at 2.25 s, 100 % at 3.25 s; optimal 0 % at 1.25 s" in drawn.alt
     assert "Guessing blindly gives 16.7 %." in drawn.alt

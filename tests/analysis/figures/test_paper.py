@@ -107,6 +107,13 @@ def test_every_figure_says_how_many_trials_it_shows(block):
         assert labels == ["PoLMDP\nn = 980 trials", "Optimal\nn = 520 trials"]
 
 
+def test_equal_values_far_out_are_one_ring():
+    values = np.array([1.0] * 30 + [6.0] * 300 + [7.0] * 100)
+    axes = axes_of(figure_confidence([values, values], LABELS))
+    rings = [line for line in axes.lines if line.get_markeredgecolor() == "#777777"]
+    assert [line.get_ydata().tolist() for line in rings] == [[1.0, 7.0], [1.0, 7.0]]
+
+
 def test_confidence_on_another_scale_shows_that_scale():
     values = [np.array([1.0, 3.0]), np.array([5.0])]
     axes = axes_of(figure_confidence(values, LABELS, confidence_scale(1, 5)))

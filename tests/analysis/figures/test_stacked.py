@@ -14,16 +14,16 @@ def rated(*rows):
 
 def test_counts_and_percentages_are_of_an_arms_right_or_wrong_guesses():
     drawn = figure_confidence_levels(
-        rated((True, True, 7), (True, True, 7), (True, True, 1), (False, False, 4)), LABELS
+        rated((True, True, 7), (True, True, 7), (True, True, 1), (True, False, 4)), LABELS
     )
     some = drawn.data.filter(pl.col("trials") > 0)
     assert some.rows() == [
         ("PoLMDP", "right", "1", 1, pytest.approx(100 / 3)),
         ("PoLMDP", "right", "7", 2, pytest.approx(200 / 3)),
-        ("optimal", "wrong", "4", 1, pytest.approx(100)),
+        ("PoLMDP", "wrong", "4", 1, pytest.approx(100)),
     ]
-    assert "PoLMDP: no wrong guess" in drawn.alt
-    assert "optimal, wrong guesses: 0 % 5, 0 % 6, 0 % 7, n = 1 trials" in drawn.alt
+    assert "optimal: no right guess; optimal: no wrong guess" in drawn.alt
+    assert "PoLMDP, wrong guesses: 0 % 5, 0 % 6, 0 % 7, n = 1 trials" in drawn.alt
 
 
 def test_every_trial_is_in_one_part():
@@ -59,11 +59,11 @@ def test_the_number_in_a_part_is_its_count():
     assert {"12", "5"} <= {text.get_text() for text in axes.texts}
 
 
-def test_a_scale_of_hundred_is_cut_into_seven_equal_parts():
-    study = rated((True, True, 0), (True, True, 14), (True, True, 15), (False, True, 100))
-    data = figure_confidence_levels(study, LABELS, confidence_scale(0, 100)).data
+def test_another_scale_is_cut_into_seven_equal_parts_that_hold_their_upper_ends():
+    study = rated((True, True, 0), (True, True, 10), (True, True, 15), (False, True, 70))
+    data = figure_confidence_levels(study, LABELS, confidence_scale(0, 70)).data
     assert data.filter(pl.col("trials") > 0).select("confidence", "trials").rows() == [
-        ("to 14.3", 2),
-        ("to 28.6", 1),
-        ("to 100", 1),
+        ("to 10", 2),
+        ("to 20", 1),
+        ("to 70", 1),
     ]
