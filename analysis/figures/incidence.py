@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import polars as pl
 
-from ..statistics.survival import ArmIncidence, Curve, Incidence
 from .drawn import Drawn
 from .style import (
     COLOURS,
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..statistics.outcome import Numbers
+    from ..statistics.survival import ArmIncidence, Curve, Incidence
 
 _TIMES = 5
 

@@ -9,13 +9,14 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from ..statistics.estimates import Mean, Share
 from .drawn import Drawn
 from .scales import CONFIDENCE, Scale
 from .style import COLOURS, INK, Labels, arms_below, boxes, panel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from ..statistics.estimates import Mean, Share
 
 _HEIGHT_INCHES = 4.0
 _WIDTH = 0.55

@@ -122,7 +122,7 @@ def _note(values: list[NDArray[np.float64]]) -> str:
     if max(len(each) for each in values) <= MOST_DOTS:
         marks = "each participant"
     else:
-        marks = f"{MOST_DOTS} participants an arm, at evenly spaced ranks"
+        marks = f"at most {MOST_DOTS} participants an arm, at evenly spaced ranks"
     return (
         "Of participants' means: histogram; box of quartiles with thick median, dot at the mean, "
         f"whiskers to the last within 1.5 boxes; small marks: {marks}."

@@ -63,7 +63,7 @@ def test_of_many_participants_some_are_drawn_evenly_through_the_ranks_and_the_fi
     assert (shown[0], shown[-1]) == (everyone.min(), everyone.max())
     thirds = [1 / 3, 2 / 3]
     assert np.quantile(shown, thirds) == pytest.approx(np.quantile(everyone, thirds), rel=0.01)
-    assert "small marks: 500 participants an arm" in note(drawn)
+    assert "small marks: at most 500 participants an arm" in note(drawn)
     assert "small marks: each participant" in note(figure_raincloud(trials(20), CORRECT, LABELS))
 
 
