@@ -26,8 +26,9 @@ from .measures import too_fast as too_fast
 from .plan import Plan as Plan
 from .plan import default_plan as default_plan
 from .plan import read_plan as read_plan
-from .publish import Results as Results
-from .publish import analyse_path as analyse_path
+from .publish import write_report as write_report
 from .reader import read_dataset as read_dataset
+from .results import Results as Results
+from .results import analyse_path as analyse_path
 from .tables import read_table as read_table
 from .tables import write_table as write_table

@@ -49,7 +49,7 @@ def differential_dropout(treated: NDArray[np.bool_], completed: NDArray[np.bool_
         low=difference.low,
         high=difference.high,
         null=0.0,
-        unit="proportion",
+        unit="share",
         symbol="",
         statistic=None,
         df=None,

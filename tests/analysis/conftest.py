@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from analysis import EVENTS, PARTICIPANTS, TRIALS, write_table
+from analysis import EVENTS, PARTICIPANTS, TRIALS, Results, analyse_path, write_report, write_table
 from tests.analysis.rows import HERE, event_row, participants_of, six_participants
 
 
@@ -18,6 +18,20 @@ def paper_fixture() -> Path:
     They are not the authors' data, which are not published.
     """
     return HERE / "paper_fixture.csv"
+
+
+@pytest.fixture(scope="session")
+def paper(paper_fixture: Path) -> Results:
+    """Everything the analysis says of the synthetic trials."""
+    return analyse_path(paper_fixture)
+
+
+@pytest.fixture(scope="session")
+def written(paper: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder with the report on the synthetic trials, all figures drawn."""
+    folder = tmp_path_factory.mktemp("reports") / "report"
+    write_report(paper, folder, lambda _what: None)
+    return folder
 
 
 @pytest.fixture

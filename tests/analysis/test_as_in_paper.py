@@ -20,7 +20,7 @@ from tests.analysis.rows import (
 @pytest.fixture(scope="module")
 def paper(paper_fixture):
     """The block computed from the synthetic trials."""
-    return analyse_path(paper_fixture).block
+    return analyse_path(paper_fixture).evidence.paper
 
 
 def test_the_fixture_gives_the_papers_chi_square(paper):

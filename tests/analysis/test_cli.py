@@ -42,11 +42,25 @@ def test_1500_trials_take_under_three_seconds_of_computing(paper_fixture):
 def test_it_writes_the_report_and_the_figures(export, tmp_path):
     result = run(alone, ["analyse", str(export), "--to", str(tmp_path / "new" / "report")])
     assert result.exit_code == 0
-    names = {path.name for path in (tmp_path / "new" / "report").rglob("*.*")}
-    figures = {"correct", "prediction_time", "confidence"}
-    drawn = {f"{figure}.{suffix}" for figure in figures for suffix in ("svg", "png", "csv")}
-    assert names == {"report.json", "report.md", *drawn}
+    names = {path.name for path in (tmp_path / "new" / "report").iterdir()}
+    assert names == {"report.html", "report.json", "report.md", "apa.txt", "figures"}
     assert list((tmp_path / "new").iterdir()) == [tmp_path / "new" / "report"]
+
+
+def test_it_follows_the_plan_and_the_mapping_it_is_given(paper_fixture, tmp_path):
+    (tmp_path / "plan.toml").write_text('[treatment]\ncondition = "polmdp"\nlabel = "legible"\n')
+    (tmp_path / "mapping.toml").write_text('[columns]\nscenario = "video"\n')
+    options = ["--plan", tmp_path / "plan.toml", "--mapping", tmp_path / "mapping.toml"]
+    result = run(alone, ["analyse", str(paper_fixture), *map(str, options)])
+    assert result.exit_code == 0
+    assert "H1, correct guesses: more with legible." in result.stdout
+
+
+def test_a_plan_that_cannot_be_followed_ends_with_code_2_and_one_line(paper_fixture, tmp_path):
+    (tmp_path / "plan.toml").write_text("alpha = 2\n")
+    result = run(alone, ["analyse", str(paper_fixture), "--plan", str(tmp_path / "plan.toml")])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith("goalguess: plan.toml, key alpha: expected")
 
 
 def test_without_to_it_writes_nothing(export, tmp_path):

@@ -15,7 +15,7 @@ from analysis import (
     read_table,
     write_table,
 )
-from analysis.publish import report_json
+from analysis.reporting.as_json import as_json
 from tests.analysis.rows import edited
 
 ADDED = {
@@ -58,7 +58,7 @@ def older(request, export, tmp_path):
 
 
 def numbers(folder):
-    report = report_json(analyse_path(folder))
+    report = as_json(analyse_path(folder))
     return report["as_in_paper"], report["warnings"], report["selection"]
 
 

@@ -1,0 +1,115 @@
+"""The answers to the hypotheses, in words with the numbers they rest on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ..arms import Arms
+from ..conclusions import Conclusion
+from ..methods import Comparison
+from ..wording import format_p, percent, without_zero
+from .document import Finding, Part
+from .effects import effect_of, estimate, interval, statement
+
+
+@dataclass(frozen=True)
+class _Words:
+    """How a measure is spoken of: its name, and more or less of it."""
+
+    name: str
+    more: str
+    less: str
+
+
+WORDS = {
+    "correct": _Words("correct guesses", "more", "fewer"),
+    "prediction_time_s": _Words("time of prediction", "longer", "shorter"),
+    "stop_time_s": _Words("stop time", "longer", "shorter"),
+    "confidence": _Words("confidence", "higher", "lower"),
+}
+"""By the column of the trials."""
+
+
+def answers(
+    conclusions: Sequence[Conclusion],
+    comparisons: Mapping[str, Comparison],
+    arms: Arms,
+    alpha: float,
+) -> list[Part]:
+    """Return the answer of each primary test, in the plan's order."""
+    return [
+        Finding(
+            f"{each.hypothesis}, {WORDS[each.measure].name}: {_verdict(each, arms, alpha)}",
+            f"{capital(means(comparisons[each.measure], arms))}. {_numbers(each, arms, alpha)}",
+        )
+        for each in conclusions
+    ]
+
+
+def capital(text: str) -> str:
+    """Write a text as the beginning of a sentence."""
+    return text[:1].upper() + text[1:]
+
+
+def means(compared: Comparison, arms: Arms) -> str:
+    """Say the share or the mean in each arm: 84.9 % correct with PoLMDP, 69.6 % with optimal."""
+    if compared.measure == "correct":
+        told = [percent(each.mean) for each in compared.means]
+        told[0] += " correct"
+    else:
+        unit = " s" if compared.unit == "s" else ""
+        told = [f"{each.mean:.2f}{unit}" for each in compared.means]
+        told[0] = f"mean {told[0]}"
+    labels = arms.labels.values()
+    return ", ".join(f"{each} with {label}" for each, label in zip(told, labels, strict=True))
+
+
+def _verdict(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
+    words, label = WORDS[conclusion.measure], arms.treatment.label
+    match conclusion.direction:
+        case "undefined":
+            return "not to be tested with these data."
+        case "none":
+            return f"no difference shown at alpha = {without_zero(alpha, 2)}."
+        case "more" | "less" as direction:
+            found = f"{words.more if direction == 'more' else words.less} with {label}"
+            return f"{found}." if conclusion.supported else f"{found}, against the hypothesis."
+
+
+def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
+    said = f"{_effect(conclusion, arms)}; {statement(conclusion.primary, alpha)}"
+    if conclusion.p_holm is not None:
+        said += f", by Holm {format_p(conclusion.p_holm, alpha=alpha)}"
+    return f"{said}. {_beside(conclusion, alpha)}".rstrip()
+
+
+def _effect(conclusion: Conclusion, arms: Arms) -> str:
+    primary = conclusion.primary
+    if primary.estimate is None:
+        return "Effect not defined"
+    bounds = f"95 % interval {interval(primary)}"
+    if primary.unit != "probability":
+        return f"Difference {effect_of(primary).with_unit(primary.estimate)}, {bounds}"
+    words, auc = WORDS[conclusion.measure], primary.estimate
+    more_often, share = (words.more, auc) if auc >= primary.null else (words.less, 1 - auc)
+    return (
+        f"Of all pairs of trials, one from each arm, {percent(share)} have the {more_often} "
+        f"{words.name} with {arms.treatment.label}, ties counted half ({estimate(primary)}, "
+        f"{bounds}; .5 is no difference)"
+    )
+
+
+def _beside(conclusion: Conclusion, alpha: float) -> str:
+    model = conclusion.model
+    if model is None:
+        return ""
+    told = f"{estimate(model)}, 95 % interval {interval(model)}, {statement(model, alpha)}"
+    if conclusion.models_agree is None:
+        return f"The mixed model beside it: {told}."
+    if conclusion.models_agree:
+        return f"The mixed model agrees: {told}."
+    return (
+        f"The mixed model falls on the other side of alpha = {without_zero(alpha, 2)}: {told}. "
+        "The two-way test holds its level better, so the conclusion is drawn from it."
+    )

@@ -1,0 +1,55 @@
+"""Sentences for a manuscript, in the style of the APA."""
+
+from __future__ import annotations
+
+from ..arms import Arms
+from ..conclusions import Conclusion
+from ..evidence import Evidence
+from ..plan import Plan
+from ..wording import chi_square_apa, format_p, mann_whitney_apa
+from .answers import WORDS, capital, means
+from .effects import bracketed, statement
+
+
+def apa_sentences(evidence: Evidence, plan: Plan) -> tuple[str, ...]:
+    """Return a sentence a result: primary tests, models, stops, then the paper's tests."""
+    paper = evidence.paper
+    return (
+        *(_primary(each, evidence, plan) for each in evidence.conclusions),
+        *(
+            f"Mixed model of {WORDS[each.measure].name}, participants and scenarios crossed: "
+            f"{bracketed(each.model)}, {statement(each.model, plan.alpha)}."
+            for each in evidence.conclusions
+            if each.model is not None
+        ),
+        f"Rate of correct stops: {bracketed(evidence.cox)}, {statement(evidence.cox, plan.alpha)} "
+        f"({_arms(plan.arms)}; Cox regression, wrong stops censored, clustered by participant).",
+        "With trials taken as independent, as in the original study: correct guesses, "
+        f"{chi_square_apa(paper.correct.test)}.",
+        *(
+            f"With trials taken as independent: {name}, {mann_whitney_apa(ranked.test)}."
+            for name, ranked in (
+                ("time of prediction", paper.prediction_time),
+                ("confidence", paper.confidence),
+            )
+        ),
+    )
+
+
+def _primary(conclusion: Conclusion, evidence: Evidence, plan: Plan) -> str:
+    words = WORDS[conclusion.measure].name
+    corrected = (
+        ""
+        if conclusion.p_holm is None
+        else f", Holm-corrected {format_p(conclusion.p_holm, alpha=plan.alpha)}"
+    )
+    return (
+        f"{capital(words)}: "
+        f"{means(evidence.comparisons[conclusion.measure], plan.arms)}, "
+        f"{bracketed(conclusion.primary)}, {statement(conclusion.primary, plan.alpha)}"
+        f"{corrected} ({_arms(plan.arms)}; trials clustered by participant and scenario)."
+    )
+
+
+def _arms(arms: Arms) -> str:
+    return f"{arms.treatment.label} against {arms.reference.label}"

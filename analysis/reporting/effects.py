@@ -1,0 +1,123 @@
+"""How an estimate is printed: by its unit, odds and hazards as ratios."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..statistics.result import TestResult
+from ..wording import format_p, without_zero
+
+_LARGEST_LOG = 700.0
+_MANY_DIGITS = 1000
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What an estimate in some unit is called, and how its value is written, without the unit."""
+
+    name: str
+    unit: str
+    write: Callable[[float], str]
+
+    def in_words(self, value: float) -> str:
+        """Write a value as running text has it: odds ratio = 2.70, difference = 2.50 s."""
+        return f"{self.name} = {self.with_unit(value)}"
+
+    def in_cell(self, value: float) -> str:
+        """Write a value as short as can be understood: odds ratio 2.70, 2.50 s."""
+        return self.with_unit(value) if self.unit else f"{self.name} {self.write(value)}"
+
+    def with_unit(self, value: float) -> str:
+        """Write a value with its unit, if it has one."""
+        return f"{self.write(value)} {self.unit}".rstrip()
+
+
+def _ratio(value: float) -> str:
+    return f"{value:.3g}" if value >= _MANY_DIGITS else f"{value:.2f}"
+
+
+def _ratio_of_log(value: float) -> str:
+    return _ratio(math.exp(min(value, _LARGEST_LOG)))
+
+
+def _coefficient(value: float) -> str:
+    return without_zero(value, 3)
+
+
+EFFECTS = {
+    "share": Effect("difference", "percentage points", lambda value: f"{100 * value:.1f}"),
+    "s": Effect("difference", "s", "{:.2f}".format),
+    "scale points": Effect("difference", "scale points", "{:.2f}".format),
+    "probability": Effect("AUC", "", _coefficient),
+    "phi": Effect("phi", "", _coefficient),
+    "correlation": Effect("correlation", "", _coefficient),
+    "odds ratio": Effect("odds ratio", "", _ratio),
+    "log odds": Effect("odds ratio", "", _ratio_of_log),
+    "log odds ratio": Effect("odds ratio", "", _ratio_of_log),
+    "log hazard ratio": Effect("hazard ratio", "", _ratio_of_log),
+}
+"""By the unit of a `TestResult`."""
+
+
+def effect_of(result: TestResult) -> Effect:
+    """Return how the estimate of a result is written."""
+    return EFFECTS[result.unit]
+
+
+def estimate(result: TestResult) -> str:
+    """Write the estimate with its name: odds ratio = 2.70."""
+    effect = effect_of(result)
+    if result.estimate is None:
+        return f"{effect.name} not defined"
+    return effect.in_words(result.estimate)
+
+
+def estimate_cell(result: TestResult) -> str:
+    """Write the estimate for a table: odds ratio 2.70, or NA."""
+    return "NA" if result.estimate is None else effect_of(result).in_cell(result.estimate)
+
+
+def interval(result: TestResult) -> str:
+    """Write the bounds of the 95 % interval: 9.5 to 21.1, or NA."""
+    if result.low is None or result.high is None:
+        return "NA"
+    write = effect_of(result).write
+    return f"{write(result.low)} to {write(result.high)}"
+
+
+def statistic(result: TestResult) -> str:
+    """Write the statistic with its degrees of freedom: t(36) = 5.32."""
+    if result.statistic is None:
+        return ""
+    return f"{result.symbol}{_degrees(result)} = {_number(result)}"
+
+
+def statement(result: TestResult, alpha: float) -> str:
+    """Write statistic and p: t(36) = 5.32, p < .001."""
+    return ", ".join(filter(None, (statistic(result), format_p(result.p, alpha=alpha))))
+
+
+def bracketed(result: TestResult) -> str:
+    """Write estimate and interval as APA has them: AUC = .349, 95 % CI [.310, .388]."""
+    if result.low is None or result.high is None:
+        return estimate(result)
+    write = effect_of(result).write
+    return f"{estimate(result)}, 95 % CI [{write(result.low)}, {write(result.high)}]"
+
+
+def _degrees(result: TestResult) -> str:
+    if result.df is None:
+        return ""
+    if isinstance(result.df, tuple):
+        return f"({', '.join(f'{df:g}' for df in result.df)})"
+    whole = float(result.df).is_integer()
+    return f"({result.df:.0f})" if whole else f"({result.df:.1f})"
+
+
+def _number(result: TestResult) -> str:
+    value = result.statistic or 0.0
+    if result.symbol == "chi2":
+        return f"{value:.3f}"
+    return f"{value:.0f}" if result.symbol == "U" else f"{value:.2f}"

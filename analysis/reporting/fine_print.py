@@ -1,0 +1,83 @@
+"""The fine print: definitions, methods and sources, the plan, what the report is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..dataset import Dataset
+from ..evidence import Evidence
+from ..plan import Plan
+from ..statistics.result import TestResult
+from ..statistics.survival import Incidence
+from .document import Heading, Items, Paragraph, Part
+from .method_tables import PRIMARY, method_names
+
+_DEFINITIONS = (
+    "Time of prediction is the stop time if the guess was correct, else the full length; both "
+    "count motion only.",
+    "Estimates are signed: positive means more with {treatment}. An AUC is the probability that a "
+    "trial with {treatment} has the larger value than one with {reference}, ties counted half; .5 "
+    "is no difference.",
+    "Clustered by participant and scenario: influence values are summed over participants, over "
+    "scenarios and over trials; the variance is the first two less the third, and not less than "
+    "the first; Student's t on the number of scenarios less one.",
+    "Where the two-way test and the mixed model fall on different sides of alpha, the conclusion "
+    "is drawn from the two-way test.",
+    "Intervals are at 95 %. Those of single arms in the paper's block are Wilson's for shares and "
+    "Student's t for means. Tests of normality describe the data and decide nothing.",
+    "In the paper's block, chi-square is Pearson's without continuity correction; Mann-Whitney is "
+    "two-sided and asymptotic, with tie correction and without continuity correction. The U "
+    "printed first is the smaller of the two, as in the paper; the treatment's own U counts the "
+    "pairs in which its value is larger, ties half.",
+)
+
+
+def fine_print_parts(data: Dataset, evidence: Evidence, packages: Mapping[str, str]) -> list[Part]:
+    """Return what is needed to check the report, or to make it again."""
+    labels = {"treatment": data.arms.treatment.label, "reference": data.arms.reference.label}
+    files = (f"{each.file}: {each.rows:,} rows, SHA-256 {each.sha256}" for each in data.sources)
+    return [
+        Heading("Fine print"),
+        Items(tuple(each.format(**labels) for each in _DEFINITIONS)),
+        Heading("Methods and their sources", 3),
+        Items(_sources(evidence)),
+        *_plan(data.plan),
+        Heading("Made from", 3),
+        Items((*files, ", ".join(f"{name} {version}" for name, version in packages.items()))),
+    ]
+
+
+def _sources(evidence: Evidence) -> tuple[str, ...]:
+    """Say of every method that was run, once, how it was done and where that is from."""
+    run: list[tuple[str, TestResult | Incidence]] = [
+        (method_names(compared)[key].removesuffix(PRIMARY), result)
+        for compared in evidence.comparisons.values()
+        for key, result in compared.results.items()
+    ]
+    run += [
+        ("Rate of correct stops", evidence.cox),
+        ("Cumulative incidence", evidence.incidence),
+        ("Against chance", evidence.chance[0]),
+        ("Confidence, right against wrong", evidence.discrimination[0]),
+        ("Likeness of trials", next(iter(evidence.likeness.values())).correlation),
+        ("Who left", evidence.sensitivity.dropout),
+    ]
+    told = (f"{name}: {result.method}. Source: {result.source}." for name, result in run)
+    return tuple(dict.fromkeys(told))
+
+
+def _plan(plan: Plan) -> list[Part]:
+    return [
+        Heading("Plan", 3),
+        Paragraph(f"{plan.file}, SHA-256 of what it says: {plan.sha256}"),
+        Items(tuple(f"{key}: {_written(value)}" for key, value in plan.content.items())),
+    ]
+
+
+def _written(value: object) -> str:
+    """Write a value of the plan much as its file does."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {_written(each)}" for key, each in value.items())
+    if isinstance(value, list):
+        return "; ".join(map(_written, value)) or "none"
+    return str(value)

@@ -1,0 +1,69 @@
+"""Every method for one measure, in two tables: trials clustered, and trials as independent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..methods import INDEPENDENT, Comparison, methods_of
+from ..statistics.result import TestResult
+from ..warning_texts import WARNINGS
+from ..wording import format_p
+from .answers import WORDS, capital
+from .document import Grid, Heading, Items, Part
+from .effects import estimate_cell, interval, statistic
+
+PRIMARY = " (primary)"
+"""What the primary test's name ends with."""
+
+_HEADER = ("", "estimate", "95 % interval", "test", "p", "n")
+
+
+def method_parts(compared: Comparison, alpha: float) -> list[Part]:
+    """Return a measure's heading, its tables, and what is to be said of single methods."""
+    words = WORDS[compared.measure]
+    names = method_names(compared)
+    name = capital(words.name)
+    parts: list[Part] = [Heading(name, 3)]
+    for caption, independent in (
+        (f"{name}, trials of one participant taken as alike", False),
+        (f"{name}, trials taken as independent", True),
+    ):
+        keys = [key for key in compared.results if (key in INDEPENDENT) == independent]
+        rows = (_row(names[key], compared.results[key], alpha) for key in keys)
+        parts.append(Grid(caption, _HEADER, tuple(rows)))
+    notes = tuple(_notes(compared, names))
+    return [*parts, Items(notes)] if notes else parts
+
+
+def method_names(compared: Comparison) -> dict[str, str]:
+    """Return how each method is called, by its key; the primary test says that it is."""
+    methods = methods_of(compared.measure, compared.primary_key, seed=0)
+    return {
+        key: method.name + PRIMARY if key == compared.primary_key else method.name
+        for key, method in methods.items()
+    }
+
+
+def p_cell(p: float | None, alpha: float) -> str:
+    """Write a p value where the column already says p."""
+    return format_p(p, alpha=alpha).removeprefix("p ").removeprefix("= ")
+
+
+def _row(name: str, result: TestResult, alpha: float) -> tuple[str, ...]:
+    has_test = result.p is not None or result.warnings
+    return (
+        name,
+        estimate_cell(result),
+        interval(result),
+        statistic(result),
+        p_cell(result.p, alpha) if has_test else "",
+        f"{result.n:,}",
+    )
+
+
+def _notes(compared: Comparison, names: dict[str, str]) -> Iterable[str]:
+    for key, result in compared.results.items():
+        for code in result.warnings:
+            yield f"{names[key]}: {WARNINGS[code]}."
+    for key, reason in compared.left_out.items():
+        yield f"{names[key]}: left out, {reason}."

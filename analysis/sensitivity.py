@@ -1,0 +1,100 @@
+"""Whether the answers hang on who left: dropout by arm, completers, intention to treat."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+
+from .completion import completion
+from .contract import COMPLETED
+from .dataset import Dataset, outcome
+from .errors import EmptyArmError
+from .methods import primary_test
+from .plan import Primary
+from .statistics.dropout import (
+    Dropout,
+    completers,
+    differential_dropout,
+    intention_to_treat,
+)
+from .statistics.outcome import Outcome
+from .statistics.result import TestResult
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """The primary tests on other selections of trials, by measure.
+
+    `counted` says whom `dropout` counts. `intention_to_treat` is None where nobody has as many
+    trials as the plan deals, so that the length of the lists is not known; a test of `completers`
+    is None where an arm has none. `filled_in` says what stands for a trial never answered.
+    """
+
+    dropout: Dropout
+    counted: str
+    completers: Mapping[str, TestResult | None]
+    intention_to_treat: Mapping[str, TestResult] | None
+    filled_in: Mapping[str, float]
+
+
+def sensitivity(data: Dataset) -> Sensitivity:
+    """Repeat the primary tests with completers only, and with everybody's whole list."""
+    dropout, counted = _dropout(data)
+    done = completion(data.trials, data.participants)[0].sort("participant")["done"].to_numpy()
+    most = int(np.bincount(outcome(data, "correct").participant).max())
+    known = most >= data.plan.trials_per_participant
+    filled_in = {each.measure: _worst(data, each.measure) for each in data.plan.primary}
+    return Sensitivity(
+        dropout=dropout,
+        counted=counted,
+        completers={
+            each.measure: _tested(each, completers(outcome(data, each.measure), done))
+            for each in data.plan.primary
+        },
+        intention_to_treat={
+            each.measure: primary_test(
+                each,
+                intention_to_treat(
+                    outcome(data, each.measure),
+                    data.plan.trials_per_participant,
+                    filled_in[each.measure],
+                ),
+            )
+            for each in data.plan.primary
+        }
+        if known
+        else None,
+        filled_in=filled_in,
+    )
+
+
+def _dropout(data: Dataset) -> tuple[Dropout, str]:
+    """Compare the arms' shares of those who left, of all whom the tables know."""
+    if data.participants is None:
+        people, incomplete = completion(data.trials, None)
+        counted = f"participants with a trial; left: {incomplete}"
+    else:
+        people = data.participants.filter(pl.col("condition").is_in(data.arms.names))
+        people = people.with_columns(done=pl.col("status") == COMPLETED)
+        counted = "participants dealt a condition; left: study not completed"
+    treated = (people["condition"] == data.arms.treatment.condition).to_numpy()
+    return differential_dropout(treated, people["done"].to_numpy()), counted
+
+
+def _worst(data: Dataset, measure: str) -> float:
+    """Return the worst of a measure: a wrong guess, the mean full length, the lowest rating."""
+    if measure == "correct":
+        return 0.0
+    if measure == "confidence":
+        return data.confidence_scale[0]
+    return float(data.trials["length_s"].drop_nulls().to_numpy().mean())
+
+
+def _tested(primary: Primary, selected: Outcome) -> TestResult | None:
+    try:
+        return primary_test(primary, selected)
+    except EmptyArmError:
+        return None

@@ -1,0 +1,194 @@
+"""What the report says: the answer first, then all the rest, with what is to be minded."""
+
+import re
+
+import pytest
+
+from analysis import PARTICIPANTS, TRIALS, analyse_path, write_table
+from analysis.reporting.apa import apa_sentences
+from analysis.reporting.document import Finding, Heading, Picture
+from analysis.reporting.markdown import markdown
+from analysis.reporting.plain import plain_text
+from analysis.reporting.report import brief_parts, report_parts
+from tests.analysis.rows import participants_of, six_participants, trial_row
+
+
+def codes(path, **options):
+    return [notice.code for notice in analyse_path(path, **options).notices]
+
+
+def one_trial_an_arm(tmp_path):
+    rows = [trial_row("P1", 1, "polmdp"), trial_row("P2", 1, "optimal")]
+    return write_table(TRIALS, rows, tmp_path)[0]
+
+
+@pytest.mark.parametrize("said_by", ["whole report", "terminal"])
+def test_it_says_the_papers_numbers(paper, said_by):
+    whole = said_by == "whole report"
+    text = markdown(report_parts(paper)) if whole else plain_text(brief_parts(paper))
+    for said in (
+        "chi2(1) = 48.864, p < .001",
+        "U = 177976, p < .001",
+        "U = 231203, p = .001",
+        "15.67 s with PoLMDP, 18.22 s with optimal",
+        "6.08 with PoLMDP, 5.78 with optimal",
+        "84.9 % with PoLMDP, 69.6 % with optimal",
+        "treat trials as independent. That is the paper's choice",
+    ):
+        assert said in " ".join(text.split())
+
+
+def test_it_begins_with_the_answers_to_the_hypotheses(paper):
+    parts = report_parts(paper)
+    verdicts = [part.verdict for part in parts[1:4] if isinstance(part, Finding)]
+    assert verdicts == [
+        "H1, correct guesses: more with PoLMDP.",
+        "H2, time of prediction: shorter with PoLMDP.",
+        "H2, confidence: no difference shown at alpha = .05.",
+    ]
+
+
+def test_an_answer_has_shares_effect_interval_test_and_the_model_beside_it(paper):
+    answer = report_parts(paper)[1]
+    assert isinstance(answer, Finding)
+    assert answer.text == (
+        "84.9 % correct with PoLMDP, 69.6 % with optimal. Difference 15.3 percentage points, "
+        "95 % interval 9.5 to 21.1; t(36) = 5.32, p < .001, by Holm p < .001. The mixed model "
+        "agrees: odds ratio = 2.70, 95 % interval 1.86 to 3.93, t(36) = 5.39, p < .001."
+    )
+
+
+def test_what_the_papers_tests_show_and_the_two_way_tests_do_not_is_told_apart(paper):
+    """Golden paper_confidence_counts: R 4.2.2 wilcox.test, p = .001 on trials."""
+    text = markdown(report_parts(paper))
+    assert "by ranks higher with PoLMDP, U = 231203, p = .001" in text
+    assert "t(36) = 1.74, p = .091" in text
+
+
+def test_the_order_is_answer_figures_tables_fine_print(paper):
+    parts = report_parts(paper, {"Correct guesses": [Picture("f", "a caption", "a figure")]})
+    headings = [part.text for part in parts if isinstance(part, Heading) and part.level == 2]
+    assert headings == [
+        "Please note",
+        "Figures",
+        "Who took part",
+        "All methods",
+        "As in the paper",
+        "Sentences for a manuscript",
+        "Fine print",
+    ]
+
+
+def test_what_cannot_be_tested_is_said_so(tmp_path):
+    results = analyse_path(one_trial_an_arm(tmp_path))
+    answers = [part for part in report_parts(results) if isinstance(part, Finding)]
+    for answer in answers:
+        assert answer.verdict.endswith("not to be tested with these data.")
+    assert markdown(report_parts(results)).count("no difference shown at alpha = .05") == 3
+
+
+def test_no_number_is_printed_as_nan_or_none(paper, tmp_path):
+    for results in (paper, analyse_path(one_trial_an_arm(tmp_path))):
+        text = markdown(report_parts(results))
+        assert not re.search(r"\b(nan|inf|None)\b", text)
+        assert ".000," not in text
+
+
+def test_a_verdict_of_the_paper_stands_beside_where_it_tips(paper):
+    """Golden tipping_icc: scipy chi2.ppf; 48.864 and 10 trials hold at any correlation."""
+    text = markdown(report_parts(paper))
+    assert "| correct guesses | .051 | .022 to .089 | 1.46 | 12.72 | none |" in text
+    assert "| confidence | .295 | .238 to .362 | 3.65 | 2.68 | .186 |" in text
+
+
+def test_every_method_run_has_its_source_in_the_fine_print(paper):
+    text = markdown(report_parts(paper)).partition("## Fine print")[2]
+    for compared in paper.evidence.comparisons.values():
+        for result in compared.results.values():
+            assert f"{result.method}. Source: {result.source}." in text
+
+
+def test_the_plan_is_printed_with_its_hash(paper):
+    text = markdown(report_parts(paper))
+    assert f"default plan, SHA-256 of what it says: {paper.data.plan.sha256}" in text
+    assert "- alpha: 0.05\n" in text
+    assert "- exclusions: none\n" in text
+
+
+def test_sentences_for_a_manuscript_are_whole_sentences(paper):
+    sentences = apa_sentences(paper.evidence, paper.data.plan)
+    assert len(sentences) == 9
+    for sentence in sentences:
+        assert sentence.endswith(".")
+    assert (
+        "Confidence: mean 6.08 with PoLMDP, 5.78 with optimal, AUC = .546, 95 % CI [.492, .600], "
+        "t(36) = 1.74, p = .091, Holm-corrected p = .091 (PoLMDP against optimal; trials "
+        "clustered by participant and scenario)."
+    ) in sentences
+
+
+def test_terminal_text_is_plain_and_narrow(paper):
+    text = plain_text(brief_parts(paper))
+    assert text.isascii()
+    assert max(len(line) for line in text.splitlines()) <= 100
+
+
+def test_the_fine_print_says_that_lead_in_makes_times_incomparable(paper):
+    text = markdown(report_parts(paper))
+    assert "about 5 s of lead-in" in text
+    assert "15.67 s and 18.22 s cannot be compared" in text
+
+
+def test_a_single_table_has_no_demographics_and_says_so(paper):
+    assert "no demographics" in plain_text(report_parts(paper))
+
+
+def test_an_export_folder_has_demographics(export):
+    text = markdown(report_parts(analyse_path(export)))
+    assert "| gender: woman | 3 (100.0 %) | 3 (100.0 %) | 6 (100.0 %) |" in text
+    assert "| age, years: mean (SD), range, n | 30.0 (0.0), 30-30, n = 3 |" in text
+
+
+def test_simulated_trials_in_the_numbers_are_the_first_thing_to_note(tmp_path):
+    rows = [*six_participants(), trial_row("bot", 1, "polmdp", simulated=True)]
+    path = write_table(TRIALS, rows, tmp_path)[0]
+    assert codes(path)[0] == "simulated_left_out"
+    assert codes(path, with_simulated=True)[0] == "simulated_included"
+    text = plain_text(report_parts(analyse_path(path, with_simulated=True)))
+    assert "Not a result: 1 simulated and 0 preview trials are in the numbers" in text
+
+
+def test_incomplete_participants_are_noted(tmp_path):
+    path = write_table(TRIALS, six_participants()[:-1], tmp_path)[0]
+    assert "incomplete_participants" in codes(path)
+
+
+def test_tests_that_are_not_defined_are_noted(tmp_path):
+    rows = [trial_row("P1", 1, "polmdp"), trial_row("P2", 1, "optimal")]
+    found = codes(write_table(TRIALS, rows, tmp_path)[0])
+    assert {"degenerate_margin", "constant_outcome", "too_few_values"} <= set(found)
+
+
+def test_trials_of_two_studies_are_not_pooled_in_silence(tmp_path):
+    rows = six_participants()
+    assert "several_studies" not in codes(write_table(TRIALS, rows, tmp_path)[0])
+    rows[-1]["study_hash"] = "another"
+    assert "several_studies" in codes(write_table(TRIALS, rows, tmp_path)[0])
+
+
+def test_small_expected_counts_are_noted(export):
+    assert "small_expected_count" in codes(export)
+
+
+def test_a_complete_export_gives_no_notice_about_its_layout(export):
+    assert not {"columns_renamed", "no_participants_table"} & set(codes(export))
+
+
+def test_participants_texts_cannot_break_the_table(tmp_path):
+    rows = six_participants()
+    people = participants_of(rows)
+    people[0] |= {"occupation": "a | b\n<script>"}
+    write_table(TRIALS, rows, tmp_path)
+    write_table(PARTICIPANTS, people, tmp_path)
+    text = markdown(report_parts(analyse_path(tmp_path)))
+    assert r"| occupation: a \| b &lt;script> | 1 (33.3 %) | 0 (0.0 %) | 1 (16.7 %) |" in text

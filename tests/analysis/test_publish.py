@@ -1,0 +1,99 @@
+"""The files of a report: all there, nothing half-written, the same bytes again."""
+
+import json
+import re
+
+import pytest
+
+from analysis import AnalysisError, analyse_path, write_report
+from analysis.reporting import drawings
+
+STEMS = {
+    "flow",
+    "incidence",
+    "accuracy_by_time",
+    "calibration",
+    "confidence_levels",
+    *(
+        f"{kind}{measure}"
+        for kind in ("", "raincloud_", "slopes_", "forest_")
+        for measure in ("correct", "prediction_time", "confidence")
+    ),
+}
+
+
+def silent(_what):
+    """Progress that no one looks at."""
+
+
+@pytest.fixture
+def one_figure(monkeypatch):
+    """Draw the first figure only, where figures are not what is tested."""
+    all_of_them = drawings.drawings
+    monkeypatch.setattr(drawings, "drawings", lambda *given: [next(all_of_them(*given))])
+
+
+def test_each_figure_is_there_as_svg_png_and_data(written):
+    found = {path.name for path in (written / "figures").iterdir()}
+    assert found == {f"{stem}.{suffix}" for stem in STEMS for suffix in ("svg", "png", "csv")}
+    for path in (written / "figures").glob("*.png"):
+        assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_markdown_links_every_figure_with_a_text_for_who_does_not_see_it(written):
+    links = re.findall(r"!\[(.+)\]\(figures/(\w+)\.svg\)", (written / "report.md").read_text())
+    assert {stem for _, stem in links} == STEMS
+    for text, stem in links:
+        assert len(text) > 20, stem
+
+
+def test_the_page_holds_every_figure_and_needs_no_other_file(written):
+    page = (written / "report.html").read_text()
+    assert page.count("<svg ") == page.count('role="img"') == len(STEMS)
+    assert not re.search(r"https?:|<script|<link|<img|@import|url\((?!#)", page)
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+
+
+def test_sentences_for_a_manuscript_have_their_own_file(written):
+    assert (written / "apa.txt").read_text().startswith("Correct guesses: 84.9 % correct with")
+
+
+@pytest.mark.usefixtures("one_figure")
+def test_the_same_data_give_the_same_bytes(export, tmp_path):
+    for name in ("one", "two"):
+        write_report(analyse_path(export), tmp_path / name, silent)
+    files = [path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*.*")]
+    assert len(files) == 7
+    for file in files:
+        one, two = ((tmp_path / name / file).read_bytes() for name in ("one", "two"))
+        assert one == two, file
+
+
+@pytest.mark.usefixtures("one_figure")
+def test_a_second_report_replaces_the_first_and_spares_other_files(export, tmp_path):
+    results = analyse_path(export)
+    folder = tmp_path / "report"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("mine")
+    (folder / "report.json").write_text("old")
+    write_report(results, folder, silent)
+    assert (folder / "notes.txt").read_text() == "mine"
+    assert json.loads((folder / "report.json").read_text())["schema_version"] == 2
+
+
+def test_a_report_that_fails_half_way_leaves_nothing(export, tmp_path):
+    def interrupted(_what):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_report(analyse_path(export), tmp_path / "reports" / "one", interrupted)
+    assert not list((tmp_path / "reports").iterdir())
+
+
+@pytest.mark.usefixtures("one_figure")
+def test_a_file_in_the_way_of_the_report_is_one_clear_error(export, tmp_path):
+    (tmp_path / "taken").write_text("mine")
+    with pytest.raises(AnalysisError, match="expected a folder to write to"):
+        write_report(analyse_path(export), tmp_path / "taken", silent)
+    assert (tmp_path / "taken").read_text() == "mine"
