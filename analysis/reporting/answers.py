@@ -80,7 +80,7 @@ def _verdict(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
 def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
     said = f"{_effect(conclusion, arms)}; {statement(conclusion.primary, alpha)}"
     if conclusion.p_holm is not None:
-        said += f", by Holm {format_p(conclusion.p_holm, alpha=alpha)}"
+        said += f", Holm-corrected {format_p(conclusion.p_holm, alpha=alpha)}"
     return f"{said}. {_beside(conclusion, alpha)}".rstrip()
 
 

@@ -72,7 +72,7 @@ def _table(grid: Grid) -> str:
     )
     return (
         f'<div class="wide" role="region" aria-label="{escape(grid.caption)}" tabindex="0">\n'
-        f"<table>\n<caption>{_text(grid.caption)}</caption>\n"
+        f"<table>\n<caption><span>{_text(grid.caption)}</span></caption>\n"
         f"<thead><tr>{header}</tr></thead>\n<tbody>\n{chr(10).join(rows)}\n</tbody>\n"
         "</table>\n</div>"
     )

@@ -115,7 +115,9 @@ def demographics_parts(block: PaperBlock) -> list[Part]:
     if found is None:
         return [Paragraph("A single table of trials has no demographics; an export folder does.")]
     rows = [("participants", *(str(found.n[group]) for group in groups))]
-    rows.append(("age, years: mean (SD), range, n", *(_age(found.age[group]) for group in groups)))
+    ages = [_age(found.age[group]) for group in groups]
+    told = ("age, years: mean (SD)", "age, years: range", "age told by")
+    rows += [(name, *cells) for name, cells in zip(told, zip(*ages, strict=True), strict=True)]
     for question, answers in found.answers.items():
         name = question.replace("_", " ")
         for answer in answers:
@@ -130,11 +132,11 @@ def demographics_parts(block: PaperBlock) -> list[Part]:
     ]
 
 
-def _age(age: Mean | None) -> str:
+def _age(age: Mean | None) -> tuple[str, str, str]:
     if age is None:
-        return "not told"
+        return "NA", "NA", "0"
     sd = "NA" if age.sd is None else f"{age.sd:.1f}"
-    return f"{age.mean:.1f} ({sd}), {age.minimum:.0f}-{age.maximum:.0f}, n = {age.n}"
+    return f"{age.mean:.1f} ({sd})", f"{age.minimum:.0f} to {age.maximum:.0f}", str(age.n)
 
 
 def _counted(count: int, n: int) -> str:

@@ -53,8 +53,8 @@ def test_an_answer_has_shares_effect_interval_test_and_the_model_beside_it(paper
     assert isinstance(answer, Finding)
     assert answer.text == (
         "84.9 % correct with PoLMDP, 69.6 % with optimal. Difference 15.3 percentage points, "
-        "95 % interval 9.5 to 21.1; t(36) = 5.32, p < .001, by Holm p < .001. The mixed model "
-        "agrees: odds ratio = 2.70, 95 % interval 1.86 to 3.93, t(36) = 5.39, p < .001."
+        "95 % interval 9.5 to 21.1; t(36) = 5.32, p < .001, Holm-corrected p < .001. The mixed "
+        "model agrees: odds ratio = 2.70, 95 % interval 1.86 to 3.93, t(36) = 5.39, p < .001."
     )
 
 
@@ -146,7 +146,8 @@ def test_a_single_table_has_no_demographics_and_says_so(paper):
 def test_an_export_folder_has_demographics(export):
     text = markdown(report_parts(analyse_path(export)))
     assert "| gender: woman | 3 (100.0 %) | 3 (100.0 %) | 6 (100.0 %) |" in text
-    assert "| age, years: mean (SD), range, n | 30.0 (0.0), 30-30, n = 3 |" in text
+    assert "| age, years: mean (SD) | 30.0 (0.0) | 30.0 (0.0) | 30.0 (0.0) |" in text
+    assert "| age told by | 3 | 3 | 6 |" in text
 
 
 def test_simulated_trials_in_the_numbers_are_the_first_thing_to_note(tmp_path):

@@ -1,0 +1,114 @@
+"""What is concluded: from the primary test alone, corrected, whatever stands beside it."""
+
+from dataclasses import replace
+
+import pytest
+
+from analysis import default_plan
+from analysis.conclusions import conclude
+from analysis.methods import Comparison
+from analysis.reporting.answers import answers
+from analysis.reporting.document import Finding
+from analysis.statistics.estimates import mean
+from analysis.statistics.result import TestResult
+
+PLAN = default_plan()
+
+
+def result(p, *, estimate=0.1, null=0.0, unit="share"):
+    return TestResult(
+        estimate=estimate,
+        low=None,
+        high=None,
+        null=null,
+        unit=unit,
+        symbol="t",
+        statistic=2.0,
+        df=36,
+        p=p,
+        n=1500,
+        n_missing=0,
+        method="a method",
+        source="a source",
+    )
+
+
+def compared(measure, primary, **others):
+    arms = mean([1.0, 0.0], "share"), mean([1.0, 0.0], "share")
+    return Comparison(measure, "share", arms, "primary", {"primary": primary, **others}, {})
+
+
+def concluded(p=(0.01, 0.01, 0.01), plan=PLAN, correct=0.1, **beside):
+    auc = {"estimate": 0.4, "null": 0.5, "unit": "probability"}
+    comparisons = {
+        "correct": compared("correct", result(p[0], estimate=correct), **beside),
+        "prediction_time_s": compared("prediction_time_s", result(p[1], **auc)),
+        "confidence": compared("confidence", result(p[2], **auc)),
+    }
+    return conclude(plan, comparisons), comparisons
+
+
+def test_less_time_supports_its_hypothesis_and_less_confidence_does_not():
+    (correct, time, confidence), _ = concluded()
+    assert (correct.direction, correct.supported) == ("more", True)
+    assert (time.direction, time.supported) == ("less", True)
+    assert (confidence.direction, confidence.supported) == ("less", False)
+
+
+def test_the_corrected_p_decides_within_the_family():
+    (correct, time, confidence), _ = concluded(p=(0.03, 0.03, 0.03))
+    assert correct.p_holm == pytest.approx(0.09)
+    assert {each.direction for each in (correct, time, confidence)} == {"none"}
+
+
+def test_a_measure_outside_of_the_family_is_not_corrected():
+    plan = replace(PLAN, holm_family=("correct",))
+    (correct, time, _), _ = concluded(p=(0.03, 0.03, 0.03), plan=plan)
+    assert correct.p_holm == pytest.approx(0.03)
+    assert time.p_holm is None
+    assert time.direction == "less"
+
+
+def test_the_plans_alpha_decides():
+    (correct, *_), _ = concluded(p=(0.01, 0.5, 0.5), plan=replace(PLAN, alpha=0.01))
+    assert correct.direction == "none"
+
+
+def test_a_test_that_is_not_defined_concludes_nothing_and_does_not_count_for_the_others():
+    (correct, time, _), _ = concluded(p=(None, 0.02, 0.04))
+    assert (correct.direction, correct.supported, correct.p_holm) == ("undefined", False, None)
+    assert time.p_holm == pytest.approx(0.04)
+
+
+@pytest.mark.parametrize(("p_model", "agree"), [(0.2, False), (0.049, True), (None, None)])
+def test_the_model_beside_agrees_if_it_falls_on_the_same_side_of_alpha(p_model, agree):
+    (correct, *_), _ = concluded(crossed_logistic=result(p_model, unit="log odds"))
+    assert correct.models_agree is agree
+    assert correct.direction == "more"
+
+
+def said(conclusions, comparisons):
+    return [
+        part
+        for part in answers(conclusions, comparisons, PLAN.arms, PLAN.alpha)
+        if isinstance(part, Finding)
+    ]
+
+
+def test_a_model_that_disagrees_is_said_to_and_not_followed():
+    correct, *_ = said(*concluded(crossed_logistic=result(0.2, unit="log odds")))
+    assert correct.verdict == "H1, correct guesses: more with PoLMDP."
+    assert "The mixed model falls on the other side of alpha = .05" in correct.text
+    assert "the conclusion is drawn from it" in correct.text
+
+
+def test_a_difference_against_the_hypothesis_is_said_to_be_so():
+    correct, _, confidence = said(*concluded(correct=-0.1))
+    assert correct.verdict == "H1, correct guesses: fewer with PoLMDP, against the hypothesis."
+    assert confidence.verdict == "H2, confidence: lower with PoLMDP, against the hypothesis."
+
+
+def test_an_auc_below_a_half_is_told_by_the_larger_share_of_pairs():
+    _, time, _ = said(*concluded())
+    assert "60.0 % have the shorter time of prediction with PoLMDP" in time.text
+    assert "AUC = .400" in time.text
