@@ -27,6 +27,11 @@ def format_p(p: float | None, relation: str = "=", alpha: float = ALPHA) -> str:
     return f"p {relation} {without_zero(p, decimals)}"
 
 
+def format_alpha(alpha: float) -> str:
+    """Write a level of significance with all its decimals: .05."""
+    return f"{alpha:g}".removeprefix("0")
+
+
 def without_zero(value: float, decimals: int) -> str:
     """Write a number that cannot exceed 1 without its leading zero, as APA asks."""
     return f"{value:.{decimals}f}".replace("0.", ".", 1)

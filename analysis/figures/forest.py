@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 _ROW_INCHES = 0.5
 _REST_INCHES = 1.4
+_MOST_DECIMALS = 4
 
 
 def figure_forest(
@@ -95,9 +96,11 @@ def _data(results: Mapping[str, TestResult], primary: str) -> pl.DataFrame:
 
 
 def _decimals(data: pl.DataFrame) -> int:
-    """Return how many decimals give the largest estimate three digits."""
+    """Return how many decimals give the largest estimate three digits, four for one next to 0."""
     largest = data["estimate"].abs().max()
-    return max(0, 2 - floor(log10(largest))) if isinstance(largest, float) and largest else 2
+    if not isinstance(largest, float) or not largest:
+        return 2
+    return min(_MOST_DECIMALS, max(0, 2 - floor(log10(largest))))
 
 
 def _draw(axes: Axes, y: int, result: TestResult, decimals: int, *, is_primary: bool) -> None:

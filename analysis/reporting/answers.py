@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from ..arms import Arms
 from ..conclusions import Conclusion
 from ..methods import Comparison
-from ..wording import format_p, percent, without_zero
+from ..warning_texts import WARNINGS
+from ..wording import format_alpha, format_p, percent
 from .document import Finding, Part
 from .effects import effect_of, estimate, interval, statement
 
@@ -71,45 +72,47 @@ def _verdict(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
         case "undefined":
             return "not to be tested with these data."
         case "none":
-            return f"no difference shown at alpha = {without_zero(alpha, 2)}."
+            return f"no difference shown at alpha = {format_alpha(alpha)}."
         case "more" | "less" as direction:
             found = f"{words.more if direction == 'more' else words.less} with {label}"
             return f"{found}." if conclusion.supported else f"{found}, against the hypothesis."
 
 
 def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
-    said = f"{_effect(conclusion, arms)}; {statement(conclusion.primary, alpha)}"
+    primary = conclusion.primary
+    said = [_effect(conclusion, arms)]
+    if primary.p is not None:
+        said.append(statement(primary, alpha))
     if conclusion.p_holm is not None:
-        said += f", Holm-corrected {format_p(conclusion.p_holm, alpha=alpha)}"
-    return f"{said}. {_beside(conclusion, alpha)}".rstrip()
+        said[-1] += f", Holm-corrected {format_p(conclusion.p_holm, alpha=alpha)}"
+    reasons = [f"{capital(WARNINGS[code])}." for code in primary.warnings]
+    return " ".join((f"{'; '.join(said)}.", *reasons, _beside(conclusion, alpha))).rstrip()
 
 
 def _effect(conclusion: Conclusion, arms: Arms) -> str:
     primary = conclusion.primary
     if primary.estimate is None:
         return "Effect not defined"
-    bounds = f"95 % interval {interval(primary)}"
+    bounds = "" if primary.low is None else f", 95 % interval {interval(primary)}"
     if primary.unit != "probability":
-        return f"Difference {effect_of(primary).with_unit(primary.estimate)}, {bounds}"
+        return f"Difference {effect_of(primary).with_unit(primary.estimate)}{bounds}"
     words, auc = WORDS[conclusion.measure], primary.estimate
     more_often, share = (words.more, auc) if auc >= primary.null else (words.less, 1 - auc)
     return (
         f"Of all pairs of trials, one from each arm, {percent(share)} have the {more_often} "
-        f"{words.name} with {arms.treatment.label}, ties counted half ({estimate(primary)}, "
+        f"{words.name} with {arms.treatment.label}, ties counted half ({estimate(primary)}"
         f"{bounds}; .5 is no difference)"
     )
 
 
 def _beside(conclusion: Conclusion, alpha: float) -> str:
     model = conclusion.model
-    if model is None:
+    if model is None or conclusion.models_agree is None:
         return ""
     told = f"{estimate(model)}, 95 % interval {interval(model)}, {statement(model, alpha)}"
-    if conclusion.models_agree is None:
-        return f"The mixed model beside it: {told}."
     if conclusion.models_agree:
         return f"The mixed model agrees: {told}."
     return (
-        f"The mixed model falls on the other side of alpha = {without_zero(alpha, 2)}: {told}. "
+        f"The mixed model falls on the other side of alpha = {format_alpha(alpha)}: {told}. "
         "The two-way test holds its level better, so the conclusion is drawn from it."
     )

@@ -14,7 +14,7 @@ from ..methods import Comparison
 from ..statistics.mixed_model import CrossedLogistic
 from ..statistics.result import TestResult
 from .answers import WORDS, capital
-from .method_tables import method_names
+from .method_tables import PRIMARY, method_names
 
 TIME, CONFIDENCE = "prediction_time", "confidence"
 
@@ -110,7 +110,9 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
 
 
 def _forest(compared: Comparison, labels: figures.Labels) -> figures.Drawn:
-    names, primary = method_names(compared), compared.primary
+    """Draw the methods whose estimates stand on the primary test's scale."""
+    names = {key: name.removesuffix(PRIMARY) for key, name in method_names(compared).items()}
+    primary = compared.primary
     results = {names[key]: _on_scale(each, primary) for key, each in compared.results.items()}
     same = {
         name: each

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..results import Results
-from .answers import answers
+from .answers import answers, capital
 from .apa import apa_sentences
 from .design_tables import (
     chance_parts,
@@ -21,6 +21,7 @@ from .method_tables import method_parts
 from .paper import TITLE as AS_IN_PAPER
 from .paper import demographics_parts, paper_parts
 
+_TITLE = "what the study shows"
 _HOW = (
     "These tests take both participants and scenarios as drawn from many, so they speak of other "
     "people and other scenarios too. Tests that take every trial as independent, as the paper "
@@ -72,7 +73,7 @@ def brief_parts(results: Results) -> list[Part]:
 def _answer(results: Results) -> list[Part]:
     arms, evidence = results.data.arms, results.evidence
     parts = [
-        Heading(f"{arms.treatment.label} against {arms.reference.label}: what the study shows", 1),
+        Heading(f"{capital(arms.treatment.label)} against {arms.reference.label}: {_TITLE}", 1),
         *answers(evidence.conclusions, evidence.comparisons, arms, results.data.plan.alpha),
         Paragraph(_HOW),
     ]

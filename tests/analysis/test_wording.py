@@ -9,6 +9,7 @@ from analysis.statistics.ranks import mann_whitney
 from analysis.statistics.two_by_two import TwoByTwo, chi_square
 from analysis.wording import (
     chi_square_apa,
+    format_alpha,
     format_p,
     format_u,
     mann_whitney_apa,
@@ -29,6 +30,18 @@ def test_a_printed_p_never_says_zero_and_never_crosses_alpha(p):
     assert printed != "p = .000"
     if printed.startswith("p = "):
         assert (float(printed.removeprefix("p = ")) < 0.05) == (p < 0.05)
+
+
+@given(st.floats(0, 1), st.sampled_from([0.001, 0.005, 0.01, 0.025, 0.05, 0.1]))
+def test_a_printed_p_falls_on_its_side_of_the_plans_alpha(p, alpha):
+    printed = format_p(p, alpha=alpha)
+    if printed.startswith("p = "):
+        assert (float(printed.removeprefix("p = ")) < alpha) == (p < alpha)
+
+
+@pytest.mark.parametrize(("alpha", "printed"), [(0.05, ".05"), (0.005, ".005"), (0.1, ".1")])
+def test_alpha_is_printed_with_all_its_decimals(alpha, printed):
+    assert format_alpha(alpha) == printed
 
 
 def test_a_p_at_the_end_of_a_table_is_printed_as_a_bound():

@@ -93,7 +93,8 @@ def test_ratios_stand_on_a_logarithmic_axis_with_plain_numbers():
 
 
 @pytest.mark.parametrize(
-    ("estimate", "shown"), [(0.0153, "0.0153"), (2.5512, "2.55"), (15.31, "15.3"), (0.0, "0.00")]
+    ("estimate", "shown"),
+    [(0.0153, "0.0153"), (2.5512, "2.55"), (15.31, "15.3"), (0.0, "0.00"), (1e-17, "0.0000")],
 )
 def test_estimates_have_three_digits(estimate, shown):
     drawn = forest({"two-way": result(estimate, estimate - 1, estimate + 1)})

@@ -84,6 +84,8 @@ def test_what_cannot_be_tested_is_said_so(tmp_path):
     answers = [part for part in report_parts(results) if isinstance(part, Finding)]
     for answer in answers:
         assert answer.verdict.endswith("not to be tested with these data.")
+        assert "An arm has a single participant" in answer.text
+        assert "p = NA" not in answer.text
     assert markdown(report_parts(results)).count("no difference shown at alpha = .05") == 3
 
 
