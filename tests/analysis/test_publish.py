@@ -5,8 +5,9 @@ import re
 
 import pytest
 
-from analysis import AnalysisError, analyse_path, write_report
+from analysis import TRIALS, AnalysisError, analyse_path, write_report, write_table
 from analysis.reporting import drawings
+from tests.analysis.rows import trial_row
 
 STEMS = {
     "flow",
@@ -57,6 +58,13 @@ def test_the_page_holds_every_figure_and_needs_no_other_file(written):
 
 def test_sentences_for_a_manuscript_have_their_own_file(written):
     assert (written / "apa.txt").read_text().startswith("Correct guesses: 84.9 % correct with")
+
+
+def test_two_trials_are_enough_for_a_whole_report(tmp_path):
+    rows = [trial_row("P1", 1, "polmdp"), trial_row("P2", 1, "optimal")]
+    path = write_table(TRIALS, rows, tmp_path)[0]
+    write_report(analyse_path(path), tmp_path / "report", silent)
+    assert {file.stem for file in (tmp_path / "report" / "figures").iterdir()} == STEMS
 
 
 @pytest.mark.usefixtures("one_figure")
