@@ -39,6 +39,14 @@ def test_a_printed_p_falls_on_its_side_of_the_plans_alpha(p, alpha):
         assert (float(printed.removeprefix("p = ")) < alpha) == (p < alpha)
 
 
+@pytest.mark.parametrize(
+    ("p", "alpha", "printed"),
+    [(0.0098, 0.01, "p = .0098"), (0.0248, 0.025, "p = .0248"), (0.0497, 0.01, "p = .050")],
+)
+def test_digits_are_added_next_to_the_plans_alpha_only(p, alpha, printed):
+    assert format_p(p, alpha=alpha) == printed
+
+
 @pytest.mark.parametrize(("alpha", "printed"), [(0.05, ".05"), (0.005, ".005"), (0.1, ".1")])
 def test_alpha_is_printed_with_all_its_decimals(alpha, printed):
     assert format_alpha(alpha) == printed

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -116,6 +117,13 @@ def test_a_study_of_next_to_nothing_is_told_without_nan_or_infinity(tmp_path):
     assert report["as_in_paper"]["confidence"]["arms"]["polmdp"]["n_missing"] == 1
     assert report["as_in_paper"]["correct"]["test"]["n"] == 17
     assert report["measures"]["confidence"]["methods"]["two_way_auc"]["n_missing"] == 1
+
+
+def test_what_is_not_finite_is_null(paper):
+    cox = replace(paper.evidence.cox, estimate=math.inf, low=math.nan)
+    report = as_json(replace(paper, evidence=replace(paper.evidence, cox=cox)))
+    assert report["time_to_correct_stop"]["cox"]["estimate"] is None
+    assert report["time_to_correct_stop"]["cox"]["low"] is None
 
 
 def test_the_plans_definition_of_time_and_its_arms_are_followed(paper_fixture, tmp_path):
