@@ -160,7 +160,6 @@ def _result(
         unit="log hazard ratio",
         symbol="z",
         statistic=z,
-        df=None,
         p=p,
         n=len(stops.time_s),
         n_missing=stops.n_missing,

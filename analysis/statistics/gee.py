@@ -64,7 +64,6 @@ def gee_logistic(outcome: Outcome) -> Gee:
         unit="log odds ratio",
         symbol="z",
         statistic=z,
-        df=None,
         p=None if z is None else 2 * float(ndtr(-abs(z))),
         n=len(data.y),
         n_missing=outcome.n_missing,

@@ -52,13 +52,10 @@ def normality(values: Values, of: str = "trials") -> Normality:
     few = n <= SHAPIRO_LIMIT
     return Normality(
         estimate=statistic,
-        low=None,
-        high=None,
         null=1.0 if few else 0.0,
         unit="W" if few else "A2",
         symbol="W" if few else "A2",
         statistic=statistic,
-        df=None,
         p=p,
         n=n,
         n_missing=n_missing,

@@ -61,13 +61,8 @@ def cluster_permutation(outcome: Outcome, rng: np.random.Generator) -> ClusterPe
     p, exact, relabellings = _permute(means, _whole(sums, trials), treated, rng)
     return ClusterPermutation(
         estimate=float(means[treated].mean() - means[~treated].mean()),
-        low=None,
-        high=None,
         null=0.0,
         unit=outcome.unit,
-        symbol="",
-        statistic=None,
-        df=None,
         p=p,
         n=len(means),
         n_missing=outcome.n_missing,

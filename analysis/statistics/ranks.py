@@ -72,13 +72,10 @@ def mann_whitney(
         p_continuity = min(1.0, 2 * float(stats.norm.sf((abs(u - pairs / 2) - 0.5) / sd)))
     return MannWhitney(
         estimate=u / pairs,
-        low=None,
-        high=None,
         null=0.5,
         unit="probability",
         symbol="z",
         statistic=z,
-        df=None,
         p=p,
         n=len(x) + len(y),
         n_missing=n_missing,
@@ -161,10 +158,6 @@ def hodges_lehmann(
         high=high,
         null=0.0,
         unit=unit,
-        symbol="",
-        statistic=None,
-        df=None,
-        p=None,
         n=len(x) + len(y),
         n_missing=n_missing,
         method="Hodges-Lehmann shift with the interval of the "

@@ -53,8 +53,6 @@ def rao_scott(outcome: Outcome) -> RaoScott:
         p, p_chi2 = float(fdtrc(1, df, f)), float(chdtrc(1, f))
     return RaoScott(
         estimate=pearson.estimate,
-        low=None,
-        high=None,
         null=0.0,
         unit=pearson.unit,
         symbol="F",

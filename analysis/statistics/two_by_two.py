@@ -136,13 +136,8 @@ def fisher_exact(table: TwoByTwo) -> TestResult:
     ratio = float(contingency.odds_ratio(table.counts, kind="conditional").statistic)
     return TestResult(
         estimate=ratio if np.isfinite(ratio) else None,
-        low=None,
-        high=None,
         null=1.0,
         unit="odds ratio",
-        symbol="",
-        statistic=None,
-        df=None,
         p=float(fisher(table.counts).pvalue),
         n=table.n,
         n_missing=table.n_missing,
@@ -169,10 +164,6 @@ def risk_difference(table: TwoByTwo) -> TestResult:
         high=float(high),
         null=0.0,
         unit="share",
-        symbol="",
-        statistic=None,
-        df=None,
-        p=None,
         n=table.n,
         n_missing=table.n_missing,
         method="difference of shares with Newcombe's hybrid score interval, 95 %, on trials",
@@ -202,10 +193,6 @@ def odds_ratio(table: TwoByTwo) -> OddsRatio:
         high=high,
         null=1.0,
         unit="odds ratio",
-        symbol="",
-        statistic=None,
-        df=None,
-        p=None,
         n=table.n,
         n_missing=table.n_missing,
         method="odds ratio with Woolf's interval, 95 %, on trials"
@@ -236,8 +223,6 @@ def _independence(
         min_expected = float(found.expected_freq.min())
     return ChiSquare(
         estimate=phi,
-        low=None,
-        high=None,
         null=0.0,
         unit="phi",
         symbol=symbol,

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from analysis import EVENTS, PARTICIPANTS, TRIALS, Results, analyse_path, write_report, write_table
+from analysis.plan import Plan, read_plan
 from tests.analysis.rows import HERE, event_row, participants_of, six_participants
 
 
@@ -43,6 +44,18 @@ def export(tmp_path: Path) -> Path:
     write_table(PARTICIPANTS, participants_of(rows), folder)
     write_table(EVENTS, [event_row(1)], folder)
     return folder
+
+
+@pytest.fixture
+def plan_of(tmp_path: Path) -> Callable[[str], Plan]:
+    """Read a plan from its text."""
+
+    def read(text: str) -> Plan:
+        path = tmp_path / "mine.toml"
+        path.write_text(text)
+        return read_plan(path)
+
+    return read
 
 
 @pytest.fixture(scope="session")

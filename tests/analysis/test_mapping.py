@@ -10,7 +10,6 @@ from analysis import (
     outcome,
     read_dataset,
     read_mapping,
-    read_plan,
 )
 from tests.analysis.rows import as_csv, edited, six_participants
 
@@ -66,18 +65,6 @@ def mapping_of(tmp_path):
         path = tmp_path / "names.toml"
         path.write_text(text)
         return read_mapping(path)
-
-    return read
-
-
-@pytest.fixture
-def plan_of(tmp_path):
-    """Read a plan from its text."""
-
-    def read(text):
-        path = tmp_path / "mine.toml"
-        path.write_text(text)
-        return read_plan(path)
 
     return read
 

@@ -8,18 +8,6 @@ from analysis.exclusions import Exclusion
 from analysis.plan import DEFAULT_FILE, default_plan, read_plan
 
 
-@pytest.fixture
-def plan_of(tmp_path):
-    """Read a plan from its text."""
-
-    def read(text):
-        path = tmp_path / "mine.toml"
-        path.write_text(text)
-        return read_plan(path)
-
-    return read
-
-
 def test_the_default_compares_the_conditions_of_the_export_as_the_statistics_ask():
     plan = default_plan()
     assert plan.arms.names == (TREATMENT, REFERENCE)
