@@ -1,39 +1,17 @@
-"""What stands beside the comparisons: the sample, likeness of trials, who left, chance."""
+"""What stands beside the comparisons: likeness of trials, chance, stops, what confidence tells."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..arms import Arms
 from ..evidence import Evidence, Likeness
-from ..flow import Flow
 from ..plan import Plan
-from ..sample import Sample
 from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
-from ..wording import format_p, percent, without_zero
+from ..wording import percent, without_zero
 from .answers import WORDS
 from .document import Grid, Heading, Items, Paragraph, Part
-from .effects import EFFECTS, bracketed, effect_of, estimate_cell, interval, statement
-
-
-def sample_parts(sample: Sample, flow: Flow, arms: Arms) -> list[Part]:
-    """Return who came how far, and how many participants and trials are analysed."""
-    sizes = list(sample.arms.values())
-    rows = [
-        ("participants", *_with_sum([each.participants for each in sizes])),
-        ("trials", *_with_sum([each.trials for each in sizes])),
-        ("incomplete participants", *_with_sum([each.incomplete for each in sizes])),
-    ]
-    header = ("", *arms.labels.values(), "both")
-    return [
-        Grid("Analysed", header, tuple(rows)),
-        Paragraph(
-            f"Incomplete means: {sample.incomplete_means}. What these participants answered is "
-            "analysed."
-        ),
-        Grid("How far participants came", header, tuple(_flow_rows(flow, arms))),
-    ]
+from .effects import bracketed, effect_of, interval, statement
 
 
 def likeness_parts(evidence: Evidence) -> list[Part]:
@@ -130,87 +108,6 @@ def discrimination_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     ]
 
 
-def sensitivity_parts(evidence: Evidence, plan: Plan) -> list[Part]:
-    """Return who left each arm, and the primary tests without them and with their whole lists."""
-    found = evidence.sensitivity
-    left = found.dropout
-    share = EFFECTS["share"]
-    told = (
-        f"Left: {left.left_treatment} of {left.participants_treatment} with "
-        f"{plan.arms.treatment.label}, {left.left_reference} of {left.participants_reference} with "
-        f"{plan.arms.reference.label} ({found.counted}). Difference "
-        f"{share.with_unit(left.estimate or 0.0)}, 95 % interval {interval(left)}, "
-        f"Fisher's exact {format_p(left.p, alpha=plan.alpha)}."
-    )
-    rows = [
-        row
-        for conclusion in evidence.conclusions
-        for row in (
-            _selection_row(conclusion.measure, "as analysed", conclusion.primary, plan.alpha),
-            _selection_row(
-                conclusion.measure,
-                "completers",
-                found.completers[conclusion.measure],
-                plan.alpha,
-            ),
-            *(
-                (
-                    _selection_row(
-                        conclusion.measure,
-                        "intention to treat",
-                        found.intention_to_treat[conclusion.measure],
-                        plan.alpha,
-                    ),
-                )
-                if found.intention_to_treat
-                else ()
-            ),
-        )
-    ]
-    return [
-        Heading("Who left", 3),
-        Paragraph(told),
-        Grid(
-            "Primary tests on other selections",
-            ("", "estimate", "95 % interval", "test", "trials"),
-            tuple(rows),
-        ),
-        Paragraph(_meaning(evidence, plan)),
-    ]
-
-
-def _meaning(evidence: Evidence, plan: Plan) -> str:
-    if evidence.sensitivity.intention_to_treat is None:
-        return (
-            f"Intention to treat is left out: nobody has the plan's {plan.trials_per_participant} "
-            "trials, so it is not known how many trials are missing."
-        )
-    worst = ", ".join(
-        f"{WORDS[measure].name} {value:.4g}"
-        for measure, value in evidence.sensitivity.filled_in.items()
-    )
-    return (
-        "Intention to treat: everybody with a trial counts with the plan's "
-        f"{plan.trials_per_participant} trials; those not answered count as the worst case "
-        f"({worst})."
-    )
-
-
-def _selection_row(
-    measure: str, selection: str, result: TestResult | None, alpha: float
-) -> tuple[str, ...]:
-    name = f"{WORDS[measure].name}, {selection}"
-    if result is None:
-        return (name, "an arm has none", "", "", "0")
-    return (
-        name,
-        estimate_cell(result),
-        interval(result),
-        statement(result, alpha),
-        f"{result.n:,}",
-    )
-
-
 def _likeness_row(name: str, likeness: Likeness) -> tuple[str, ...]:
     correlation, tipping = likeness.correlation, likeness.tipping
     effect = "NA" if likeness.design_effect is None else f"{likeness.design_effect:.2f}"
@@ -237,27 +134,6 @@ def _tipping_correlation(largest: float | None) -> str:
     return "none" if largest > 1 else without_zero(largest, 3)
 
 
-def _flow_rows(flow: Flow, arms: Arms) -> list[tuple[str, ...]]:
-    rows = []
-    for step in flow.steps:
-        groups = (step.reached, *step.of_these, *step.left)
-        names = (
-            step.reached.what,
-            *(f"of these: {each.what}" for each in step.of_these),
-            *(f"left: {each.what}" for each in step.left),
-        )
-        for name, group in zip(names, groups, strict=True):
-            counts = ("", "") if group.arms is None else (group.arms[arm] for arm in arms.names)
-            rows.append(
-                (name, *(f"{each:,}" if each != "" else "" for each in counts), f"{group.total:,}")
-            )
-    return rows
-
-
 def _notes(named: Iterable[tuple[str, TestResult]]) -> list[Part]:
     notes = tuple(f"{name}: {WARNINGS[code]}." for name, test in named for code in test.warnings)
     return [Items(notes)] if notes else []
-
-
-def _with_sum(values: list[int]) -> tuple[str, ...]:
-    return tuple(f"{each:,}" for each in (*values, sum(values)))

@@ -7,19 +7,13 @@ from collections.abc import Mapping, Sequence
 from ..results import Results
 from .answers import answers, capital
 from .apa import apa_sentences
-from .design_tables import (
-    chance_parts,
-    discrimination_parts,
-    likeness_parts,
-    sample_parts,
-    sensitivity_parts,
-    stops_parts,
-)
+from .design_tables import chance_parts, discrimination_parts, likeness_parts, stops_parts
 from .document import Heading, Items, Paragraph, Part, Picture
 from .fine_print import fine_print_parts
 from .method_tables import method_parts
 from .paper import TITLE as AS_IN_PAPER
 from .paper import demographics_parts, paper_parts
+from .people_tables import sample_parts, sensitivity_parts
 
 _TITLE = "what the study shows"
 _HOW = (

@@ -1,0 +1,120 @@
+"""Who took part: sizes of the arms, how far participants came, who left and what that changes."""
+
+from __future__ import annotations
+
+from ..arms import Arms
+from ..evidence import Evidence
+from ..flow import Flow
+from ..plan import Plan
+from ..sample import Sample
+from ..statistics.result import TestResult
+from ..wording import format_p
+from .answers import WORDS
+from .document import Grid, Heading, Paragraph, Part
+from .effects import EFFECTS, estimate_cell, interval, statement
+
+
+def sample_parts(sample: Sample, flow: Flow, arms: Arms) -> list[Part]:
+    """Return who came how far, and how many participants and trials are analysed."""
+    sizes = list(sample.arms.values())
+    rows = [
+        ("participants", *_with_sum([each.participants for each in sizes])),
+        ("trials", *_with_sum([each.trials for each in sizes])),
+        ("incomplete participants", *_with_sum([each.incomplete for each in sizes])),
+    ]
+    header = ("", *arms.labels.values(), "both")
+    return [
+        Grid("Analysed", header, tuple(rows)),
+        Paragraph(
+            f"Incomplete means: {sample.incomplete_means}. What these participants answered is "
+            "analysed."
+        ),
+        Grid("How far participants came", header, tuple(_flow_rows(flow, arms))),
+    ]
+
+
+def sensitivity_parts(evidence: Evidence, plan: Plan) -> list[Part]:
+    """Return who left each arm, and the primary tests without them and with their whole lists."""
+    found = evidence.sensitivity
+    selections = {
+        "as analysed": {each.measure: each.primary for each in evidence.conclusions},
+        "completers": found.completers,
+        **({"intention to treat": found.intention_to_treat} if found.intention_to_treat else {}),
+    }
+    rows = tuple(
+        _selection_row(
+            f"{WORDS[each.measure].name}, {selection}", results[each.measure], plan.alpha
+        )
+        for each in evidence.conclusions
+        for selection, results in selections.items()
+    )
+    return [
+        Heading("Who left", 3),
+        Paragraph(_who_left(evidence, plan)),
+        Grid(
+            "Primary tests on other selections",
+            ("", "estimate", "95 % interval", "test", "trials"),
+            rows,
+        ),
+        Paragraph(_meaning(evidence, plan)),
+    ]
+
+
+def _who_left(evidence: Evidence, plan: Plan) -> str:
+    left, arms = evidence.sensitivity.dropout, plan.arms
+    difference = "NA" if left.estimate is None else EFFECTS[left.unit].with_unit(left.estimate)
+    return (
+        f"Left: {left.left_treatment} of {left.participants_treatment} with "
+        f"{arms.treatment.label}, {left.left_reference} of {left.participants_reference} with "
+        f"{arms.reference.label} ({evidence.sensitivity.counted}). Difference {difference}, "
+        f"95 % interval {interval(left)}, Fisher's exact {format_p(left.p, alpha=plan.alpha)}."
+    )
+
+
+def _meaning(evidence: Evidence, plan: Plan) -> str:
+    if evidence.sensitivity.intention_to_treat is None:
+        return (
+            f"Intention to treat is left out: nobody has the plan's {plan.trials_per_participant} "
+            "trials, so it is not known how many trials are missing."
+        )
+    worst = ", ".join(
+        f"{WORDS[measure].name} {value:.4g}"
+        for measure, value in evidence.sensitivity.filled_in.items()
+    )
+    return (
+        "Intention to treat: everybody with a trial counts with the plan's "
+        f"{plan.trials_per_participant} trials; those not answered count as the worst case "
+        f"({worst})."
+    )
+
+
+def _selection_row(name: str, result: TestResult | None, alpha: float) -> tuple[str, ...]:
+    if result is None:
+        return (name, "an arm has none", "", "", "0")
+    return (
+        name,
+        estimate_cell(result),
+        interval(result),
+        statement(result, alpha),
+        f"{result.n:,}",
+    )
+
+
+def _flow_rows(flow: Flow, arms: Arms) -> list[tuple[str, ...]]:
+    rows = []
+    for step in flow.steps:
+        named = [
+            (step.reached.what, step.reached),
+            *((f"of these: {each.what}", each) for each in step.of_these),
+            *((f"left: {each.what}", each) for each in step.left),
+        ]
+        for name, group in named:
+            by_arm = ["", ""]
+            if group.arms is not None:
+                by_arm = [f"{group.arms[arm]:,}" for arm in arms.names]
+            rows.append((name, *by_arm, f"{group.total:,}"))
+    return rows
+
+
+def _with_sum(values: list[int]) -> tuple[str, ...]:
+    return tuple(f"{each:,}" for each in (*values, sum(values)))
