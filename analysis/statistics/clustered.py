@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .codes import FEW_CLUSTERS, ONE_PARTICIPANT, SCENARIOS_NOT_SHARED
 from .inference import FEW, Inference, student, undefined
 from .influence import Influence, cluster_count, cluster_variance, of_auc, of_difference
-from .outcome import Outcome
+from .outcome import UNKNOWN, Outcome
 from .result import TestResult
 from .two_way import SOURCE as CAMERON
 from .two_way import TwoWay, two_way
@@ -182,6 +182,8 @@ def _satterthwaite(
 
 def _sharing(data: Outcome) -> tuple[str, ...]:
     """Warn if a scenario was seen in one arm only, where it cannot be told from the condition."""
-    seen, in_treatment = np.bincount(data.scenario), np.bincount(data.scenario, data.treated)
+    known = data.scenario != UNKNOWN
+    scenario, treated = data.scenario[known], data.treated[known]
+    seen, in_treatment = np.bincount(scenario), np.bincount(scenario, treated)
     shared = (in_treatment > 0) & (in_treatment < seen)
     return () if shared.all() else (SCENARIOS_NOT_SHARED,)

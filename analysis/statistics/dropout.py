@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import EmptyArmError
-from .outcome import Outcome
+from .outcome import UNKNOWN, Outcome
 from .result import TestResult
 from .two_by_two import TwoByTwo, fisher_exact, risk_difference
 
@@ -78,8 +78,8 @@ def intention_to_treat(outcome: Outcome, trials_dealt: int, missing: float) -> O
     What is analysed is the condition as dealt, whatever became of the participant. Each gets
     `trials_dealt` trials: trials without a value, and trials never reached, count as `missing`,
     which should be the worst case of the measure: 0 (wrong) for correct guesses, the full length,
-    on average, for time. Which scenarios were never reached is unknown, so these trials form one
-    more scenario. Participants who were dealt a condition but saw no trial are not in it: they
+    on average, for time. Which scenarios were never reached is unknown, so these trials are of
+    scenario `UNKNOWN`. Participants who were dealt a condition but saw no trial are not in it: they
     never met the condition. Where the length of the lists is unknown this cannot be computed, and
     `outcome` itself, with the trials there are, is the nearest to it.
     """
@@ -93,7 +93,7 @@ def intention_to_treat(outcome: Outcome, trials_dealt: int, missing: float) -> O
     return dataclasses.replace(
         filled,
         y=np.where(added | np.isnan(filled.y), missing, filled.y),
-        scenario=np.where(added, outcome.scenario.max() + 1, filled.scenario),
+        scenario=np.where(added, UNKNOWN, filled.scenario),
     )
 
 

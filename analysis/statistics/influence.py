@@ -67,9 +67,9 @@ def cluster_count(cluster: Clusters) -> int:
 
 
 def cluster_variance(h: Numbers, cluster: Clusters) -> float | None:
-    """Return G/(G-1) times the sum over G clusters of (sum of h)^2; None if G is 1."""
+    """Return G/(G-1) times the sum over G clusters of (sum of h)^2; None if G < 2."""
     clusters = cluster_count(cluster)
-    if clusters == 1:
+    if clusters < 2:
         return None
     sums = np.bincount(cluster, h)
     squared = float(sums @ sums)

@@ -12,13 +12,17 @@ from ..errors import EmptyArmError
 Numbers = NDArray[np.float64]
 Clusters = NDArray[np.int64]
 
+UNKNOWN = -1
+"""The number of a scenario that nobody knows."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """A measure of N trials, all arrays of shape (N,).
 
     `y` in `unit`, NaN where missing; `treated[i]`: whether trial i is of the treatment arm;
-    `participant[i]`, `scenario[i]`: numbers from 0 of the clusters it belongs to.
+    `participant[i]`, `scenario[i]`: numbers from 0 of the clusters it belongs to. A trial that was
+    never reached is of scenario `UNKNOWN`, which only the two-way tests take.
     """
 
     name: str
@@ -45,8 +49,13 @@ class Outcome:
             self.unit,
             self.y[there],
             treated,
-            *(
-                np.unique(each[there], return_inverse=True)[1]
-                for each in (self.participant, self.scenario)
-            ),
+            *(_anew(each[there]) for each in (self.participant, self.scenario)),
         )
+
+
+def _anew(cluster: Clusters) -> Clusters:
+    """Number the clusters without gaps; what is unknown stays so."""
+    known = cluster != UNKNOWN
+    numbered = np.full_like(cluster, UNKNOWN)
+    numbered[known] = np.unique(cluster[known], return_inverse=True)[1]
+    return numbered

@@ -9,7 +9,7 @@ import numpy as np
 from .codes import FEW_CLUSTERS, ONE_PARTICIPANT, ONE_SCENARIO
 from .inference import FEW, Inference, student, undefined
 from .influence import ROUNDING, Influence, cluster_count, cluster_variance
-from .outcome import Outcome
+from .outcome import UNKNOWN, Outcome
 from .result import TestResult
 
 SOURCE = "Cameron, Gelbach and Miller (2011), Journal of Business & Economic Statistics 29, 238-249"
@@ -20,7 +20,8 @@ class TwoWay(TestResult):
     """An estimate with its variance by participants, by scenarios and by trials alone.
 
     `se`^2 = max(v_participant + v_scenario - v_trial, v_participant); each is in `unit`^2, and
-    None where there is a single cluster.
+    None where there is a single cluster. `v_scenario` and `v_trial` are of the trials whose
+    scenario is known: a trial with a scenario of its own would add the same to both.
     """
 
     v_participant: float | None
@@ -43,20 +44,22 @@ class TwoWayInference(Inference):
 def two_way(data: Outcome, influence: Influence, null: float, *warnings: str) -> TwoWayInference:
     """Test an estimate against `null` by t on scenarios - 1 degrees of freedom.
 
-    `data` has no missing values and may be of one arm. Undefined, with a warning, if an arm has a
+    `data` has no missing values and may be of one arm; trials of scenario `UNKNOWN` count as of
+    one of their own each, but not among the scenarios. Undefined, with a warning, if an arm has a
     single participant (whose trials cannot tell how participants differ) or all trials are of one
     scenario. Source: Cameron, Gelbach and Miller (2011).
     """
-    h = influence.h
-    v_participant = cluster_variance(h, data.participant)
-    v_scenario = cluster_variance(h, data.scenario)
+    known = data.scenario != UNKNOWN
+    h, scenario = influence.h[known], data.scenario[known]
+    v_participant = cluster_variance(influence.h, data.participant)
+    v_scenario = cluster_variance(h, scenario)
     v_trial = cluster_variance(h, np.arange(len(h)))
-    participants, scenarios = cluster_count(data.participant), cluster_count(data.scenario)
+    participants, scenarios = cluster_count(data.participant), cluster_count(scenario)
     arms = (data.treated, ~data.treated)
     fewest = min(cluster_count(data.participant[arm]) for arm in arms if arm.any())
-    if v_participant is None or v_trial is None or fewest == 1:
+    if v_participant is None or fewest == 1:
         inference = undefined(influence.estimate, null, *warnings, ONE_PARTICIPANT)
-    elif v_scenario is None:
+    elif v_scenario is None or v_trial is None:
         inference = undefined(influence.estimate, null, *warnings, ONE_SCENARIO)
     else:
         if min(fewest, scenarios) < FEW:

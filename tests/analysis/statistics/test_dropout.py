@@ -1,14 +1,21 @@
 """Leaving participants: compared between arms, and kept in the comparison."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+import statsmodels.api as sm
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
+from statsmodels.stats.sandwich_covariance import cov_cluster_2groups
 
 from analysis.errors import EmptyArmError
+from analysis.statistics.clustered import two_way_auc, two_way_difference
 from analysis.statistics.dropout import completers, differential_dropout, intention_to_treat
-from analysis.statistics.outcome import Outcome
+from analysis.statistics.outcome import UNKNOWN, Outcome
+from tests.analysis.statistics.cases import defined
+from tests.analysis.statistics.outcomes import of_fixture
 
 NAN = float("nan")
 
@@ -90,9 +97,68 @@ def test_intention_to_treat_counts_every_trial_dealt_to_whoever_played_one():
     assert found.n_missing == 0
 
 
-def test_trials_never_reached_form_a_scenario_of_their_own():
+def test_the_scenario_of_a_trial_never_reached_is_unknown():
     found = intention_to_treat(trials(), trials_dealt=3, missing=0.0)
-    assert found.scenario.tolist() == [0, 1, 2, 1, 0, 2, 3, 3, 3]
+    assert found.scenario.tolist() == [0, 1, 2, 1, 0, 2, UNKNOWN, UNKNOWN, UNKNOWN]
+
+
+@pytest.fixture(scope="module")
+def half_of_an_arm_left(paper_fixture):
+    """Correct guesses of the synthetic trials; 26 of the 52 reference participants left after 3."""
+    whole = of_fixture(paper_fixture, "correct")
+    leavers = np.unique(whole.participant[~whole.treated])[:26]
+    # rows are in the order of participants, ten each
+    index = np.tile(np.arange(10), 150)
+    stayed = ~np.isin(whole.participant, leavers) | (index < 3)
+    return replace(
+        whole,
+        y=whole.y[stayed],
+        treated=whole.treated[stayed],
+        participant=whole.participant[stayed],
+        scenario=whole.scenario[stayed],
+    )
+
+
+def test_trials_never_reached_vary_as_statsmodels_has_it_with_a_scenario_of_each_ones_own(
+    half_of_an_arm_left,
+):
+    """statsmodels cov_cluster_2groups without corrections, for the least squares on the arm."""
+    filled = intention_to_treat(half_of_an_arm_left, trials_dealt=10, missing=0.0)
+    test = defined(two_way_difference(filled))
+    unknown = filled.scenario == UNKNOWN
+    own = np.where(unknown, 100 + np.arange(len(unknown)), filled.scenario)
+    fit = sm.OLS(filled.y, sm.add_constant(filled.treated.astype(float))).fit()
+    both, _, _ = cov_cluster_2groups(fit, filled.participant, own, use_correction=False)
+    uncorrected = (
+        test.v_participant * 149 / 150 + test.v_scenario * 36 / 37 - test.v_trial * 1317 / 1318
+    )
+    assert unknown.sum() == 182
+    assert uncorrected == pytest.approx(both[1, 1], rel=1e-9)
+
+
+def test_trials_never_reached_do_not_count_as_scenarios_nor_decide_the_test(half_of_an_arm_left):
+    """As one cluster of 182 trials they took the standard error from .034 to .158."""
+    seen = defined(two_way_difference(half_of_an_arm_left))
+    filled = defined(two_way_difference(intention_to_treat(half_of_an_arm_left, 10, 0.0)))
+    assert (filled.scenarios, filled.df) == (37, 36)
+    assert seen.se < filled.se < 1.5 * seen.se
+    assert filled.warnings == ()
+
+
+@pytest.mark.parametrize("test", [two_way_difference, two_way_auc])
+def test_trials_of_one_scenario_and_unknown_ones_are_trials_of_one_scenario(test):
+    found = test(
+        Outcome(
+            name="correct",
+            unit="share",
+            y=np.array([1.0, 0.0, 1.0, 0.0]),
+            treated=np.array([True, True, False, False]),
+            participant=np.arange(4),
+            scenario=np.array([0, 0, 0, UNKNOWN]),
+        )
+    )
+    assert found.p is None
+    assert found.warnings == ("one_scenario",)
 
 
 def test_who_saw_no_trial_is_not_in_it():
