@@ -24,7 +24,11 @@ from .statistics.calibration import (
 from .statistics.chance import against_chance
 from .statistics.cox import CoxResult, clustered_cox
 from .statistics.design_effect import TippingPoint, design_effect, tipping_icc
-from .statistics.intraclass import IntraclassCorrelation, intraclass_correlation
+from .statistics.intraclass import (
+    IntraclassCorrelation,
+    intraclass_correlation,
+    intraclass_correlation_of_ranks,
+)
 from .statistics.outcome import Numbers
 from .statistics.survival import Incidence, cumulative_incidence, stops
 from .statistics.two_way import TwoWay
@@ -34,8 +38,9 @@ from .statistics.two_way import TwoWay
 class Likeness:
     """What the paper's test of a measure takes to be 0: how alike the trials of a participant are.
 
-    `design_effect` is by what the variance of a mean is larger than with independent trials, None
-    where undefined; `tipping` where the test's verdict falls, None without a statistic.
+    `correlation` is of what the test compares: correct guesses, else ranks. `design_effect` is by
+    what the variance between the arms is larger than with independent trials, None where
+    undefined; `tipping` where the test's verdict falls, None without a statistic.
     """
 
     correlation: IntraclassCorrelation
@@ -92,18 +97,16 @@ def gather(data: Dataset) -> Evidence:
 
 def _likeness(data: Dataset, paper: PaperBlock) -> dict[str, Likeness]:
     """Set the paper's tests against how alike trials of a participant are."""
-    chi2, times, ratings = paper.correct.test, paper.prediction_time.test, paper.confidence.test
-    squared = {
-        "correct": chi2.statistic,
-        **{
-            measure: None if test.statistic is None else test.statistic**2
-            for measure, test in (("prediction_time_s", times), ("confidence", ratings))
-        },
-    }
-    return {
-        measure: _alike(intraclass_correlation(outcome(data, measure)), statistic)
-        for measure, statistic in squared.items()
-    }
+    of_correct = intraclass_correlation(outcome(data, "correct"))
+    likeness = {"correct": _alike(of_correct, paper.correct.test.statistic)}
+    for measure, test in (
+        ("prediction_time_s", paper.prediction_time.test),
+        ("confidence", paper.confidence.test),
+    ):
+        of_ranks = intraclass_correlation_of_ranks(outcome(data, measure))
+        squared = None if test.statistic is None else test.statistic**2
+        likeness[measure] = _alike(of_ranks, squared)
+    return likeness
 
 
 def _alike(correlation: IntraclassCorrelation, statistic: float | None) -> Likeness:

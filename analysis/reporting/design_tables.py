@@ -30,10 +30,11 @@ def likeness_parts(evidence: Evidence) -> list[Part]:
     return [
         Heading("How alike trials of a participant are", 3),
         Paragraph(
-            "The paper's tests take this correlation as 0. The design effect is by how much it "
-            "raises the variance. The last two columns say from where on the verdict of the "
-            "paper's test tips: it would no longer be significant at .05. Scenarios, which are "
-            "alike too, come on top of it."
+            "The paper's tests take this correlation as 0; for time and confidence it is that of "
+            "the ranks, which these tests compare. The design effect is by how much it raises "
+            "the variance of a difference between the arms. The last two columns say from where "
+            "on the verdict of the paper's test tips: it would no longer be significant at .05. "
+            "Scenarios, which are alike too, come on top of it."
         ),
         Grid("The paper's tests and clustering by participant", header, rows),
     ]

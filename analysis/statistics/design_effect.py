@@ -22,8 +22,9 @@ class TippingPoint:
 
 
 def design_effect(icc: float, trials_per_participant: float) -> float:
-    """Factor by which clustering raises the variance of a mean: 1 + (m - 1) icc.
+    """Factor by which clustering raises the variance of a mean or a difference: 1 + (m - 1) icc.
 
+    m is `trials_per_participant`, as IntraclassCorrelation has it where the numbers differ.
     Source: Kish (1965), Survey Sampling.
     """
     return 1 + (trials_per_participant - 1) * icc

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,8 +20,9 @@ _ROUNDING = 1e-12
 class IntraclassCorrelation(TestResult):
     """Correlation of two trials of a participant within an arm; F tests whether it is 0.
 
-    `trials_per_participant` is the mean over trials (sum m^2 / N for participants of m trials),
-    with which the design effect of a mean is 1 + (trials_per_participant - 1) estimate.
+    `trials_per_participant` is the number with which the design effect of a difference between
+    the arms is 1 + (trials_per_participant - 1) estimate: in an arm of n trials the mean over
+    trials (sum m^2 / n for participants of m), averaged over arms with weights 1 / n.
     """
 
     df: tuple[float, float]
@@ -40,7 +41,6 @@ def intraclass_correlation(outcome: Outcome) -> IntraclassCorrelation:
     """
     data = outcome.present()
     n, participants = len(data.y), cluster_count(data.participant)
-    sizes = np.bincount(data.participant)
     df = participants - 2, n - participants
     between, within, size = _mean_squares(data, df) if min(df) > 0 else (0.0, 0.0, 1.0)
     estimate = low = high = f = p = None
@@ -65,9 +65,30 @@ def intraclass_correlation(outcome: Outcome) -> IntraclassCorrelation:
         source="Donner and Klar (2000), Design and Analysis of Cluster Randomization Trials; "
         "interval of Searle (1971), Linear Models",
         warnings=_warnings(df, within),
-        trials_per_participant=float(sizes @ sizes) / n,
+        trials_per_participant=_trials_per_participant(data),
         participants=participants,
     )
+
+
+def intraclass_correlation_of_ranks(outcome: Outcome) -> IntraclassCorrelation:
+    """Estimate it for the mid-ranks of all trials, whose sum a Mann-Whitney test compares.
+
+    All else is as in `intraclass_correlation`.
+    """
+    from scipy import stats
+
+    ranks = stats.rankdata(outcome.y, nan_policy="omit")
+    found = intraclass_correlation(replace(outcome, y=ranks))
+    return replace(found, method=f"{found.method} of mid-ranks")
+
+
+def _trials_per_participant(data: Outcome) -> float:
+    """Return the number of trials as it counts for a difference; exactly 1 if all have one."""
+    (n, squares), (others, their_squares) = (
+        (int(arm.sum()), int((np.bincount(data.participant[arm]) ** 2).sum()))
+        for arm in (data.treated, ~data.treated)
+    )
+    return (squares * others**2 + their_squares * n**2) / (n * others * (n + others))
 
 
 def _mean_squares(data: Outcome, df: tuple[int, int]) -> tuple[float, float, float]:

@@ -1,10 +1,16 @@
 """The intraclass correlation against the library's analysis of variance and textbook limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from analysis.statistics.intraclass import intraclass_correlation
+from analysis.statistics.design_effect import design_effect
+from analysis.statistics.intraclass import (
+    intraclass_correlation,
+    intraclass_correlation_of_ranks,
+)
 from tests.analysis.statistics.cases import defined
 from tests.analysis.statistics.outcomes import of_fixture, outcome
 
@@ -31,8 +37,6 @@ def test_it_finds_the_correlation_that_was_put_in_and_no_difference_between_arms
     found = defined(intraclass_correlation(outcome(y, treated, participant, participant)))
     assert found.low < 0.2 < found.high
     assert found.high - found.low < 0.06
-    sizes = np.bincount(participant)
-    assert found.trials_per_participant == pytest.approx((sizes**2).sum() / len(participant))
 
 
 def test_searles_interval_ends_where_f_is_at_its_quantiles(paper_fixture):
@@ -40,6 +44,59 @@ def test_searles_interval_ends_where_f_is_at_its_quantiles(paper_fixture):
     for bound, quantile in ((found.low, 0.975), (found.high, 0.025)):
         ratio = (1 + 9 * bound) / (1 - bound)
         assert found.statistic / ratio == pytest.approx(stats.f.ppf(quantile, *found.df))
+
+
+def two_trials_each_in_the_reference_arm(data):
+    """The data without what participants of the reference arm answered after their second trial."""
+    first = [np.flatnonzero(data.participant == each)[:2] for each in np.unique(data.participant)]
+    kept = data.treated | np.isin(np.arange(len(data.y)), np.concatenate(first))
+    columns = (data.y, data.treated, data.participant, data.scenario)
+    return outcome(*(column[kept] for column in columns))
+
+
+@pytest.mark.parametrize("icc", [0.0, 0.2, 1.0])
+def test_with_unequal_arms_the_design_effect_is_that_of_the_matrix_of_covariances(icc):
+    participant = np.repeat(np.arange(9), [1, 2, 9, 4, 4, 1, 1, 2, 3])
+    treated = participant < 5
+    found = intraclass_correlation(outcome(participant % 3, treated, participant, participant))
+    weights = np.where(treated, 1 / treated.sum(), -1 / (~treated).sum())
+    alike = np.equal.outer(participant, participant)
+    covariances = icc * alike + (1 - icc) * np.eye(len(participant))
+    expected = weights @ covariances @ weights / (weights @ weights)
+    assert design_effect(icc, found.trials_per_participant) == pytest.approx(expected)
+
+
+def test_single_trials_count_as_exactly_one():
+    trials = outcome(range(29), np.arange(29) < 7, range(29), range(29))
+    assert intraclass_correlation(trials).trials_per_participant == 1
+
+
+@pytest.mark.parametrize("measure", ["time", "confidence"])
+@pytest.mark.parametrize("shorten", [lambda data: data, two_trials_each_in_the_reference_arm])
+def test_by_ranks_the_design_effect_is_near_what_clustering_does_to_the_variance(
+    paper_fixture, measure, shorten
+):
+    """statsmodels' least squares of scipy's ranks, with and without clusters."""
+    from statsmodels.regression.linear_model import OLS
+
+    data = shorten(of_fixture(paper_fixture, measure))
+    arms = np.column_stack([np.ones(len(data.y)), data.treated])
+    model = OLS(stats.rankdata(data.y), arms)
+    clusters = {"groups": data.participant, "use_correction": False}
+    clustered = model.fit(cov_type="cluster", cov_kwds=clusters).bse[1]
+    independent = model.fit(cov_type="HC0").bse[1]
+    found = intraclass_correlation_of_ranks(data)
+    effect = design_effect(found.estimate or 0, found.trials_per_participant)
+    assert effect == pytest.approx((clustered / independent) ** 2, rel=0.1)
+
+
+def test_of_ranks_only_the_order_of_values_matters(paper_fixture):
+    data = of_fixture(paper_fixture, "time")
+    data.y[3] = np.nan
+    found = intraclass_correlation_of_ranks(data)
+    assert found == intraclass_correlation_of_ranks(replace(data, y=np.log(data.y)))
+    assert (found.n, found.n_missing) == (1499, 1)
+    assert found.method.endswith("of mid-ranks")
 
 
 @pytest.mark.parametrize(
