@@ -17,15 +17,18 @@ _POSSIBLE = (_STOP >= 0) & (_STOP <= _LENGTH) & (_LENGTH > 0)
 CORRECT = pl.col("guess") == pl.col("goal")
 """Whether the guess was correct."""
 
-PREDICTION_TIME_S = pl.when(_POSSIBLE & _CORRECT.is_not_null()).then(
-    pl.when(_CORRECT).then(_STOP).otherwise(_LENGTH)
-)
+_RIGHT = _CORRECT & _POSSIBLE
+_WRONG = ~_CORRECT & _POSSIBLE.fill_null(True)
+"""What follows from a wrong guess needs no stop."""
+
+PREDICTION_TIME_S = pl.when(_RIGHT).then(_STOP).when(_WRONG).then(_LENGTH)
 """Time of prediction, s; null where the times are impossible, too."""
 
-SCORE = pl.when(_POSSIBLE & _CORRECT.is_not_null()).then(
-    pl.when(_CORRECT)
+SCORE = (
+    pl.when(_RIGHT)
     .then(pl.min_horizontal(FULL_SCORE, FULL_SCORE * (_LENGTH - _STOP) / (2 * _LENGTH / 3)))
-    .otherwise(0.0)
+    .when(_WRONG)
+    .then(0.0)
 )
 """Points, 0 to 10; null where the times are impossible, too."""
 

@@ -28,16 +28,29 @@ def derived(rows, expression):
     return frame.select(expression.alias("derived"))["derived"].to_list()
 
 
-def by_definition(rows, definition, *names, impossible=False):
+def by_definition(rows, definition, *names):
     """Apply a definition of `measures` to each row; None where a cell it needs is missing."""
     found = []
     for cells in rows:
         row = dict(zip(COLUMNS, cells, strict=True))
         given = {name: row[name] for name in names}
-        known = None not in given.values()
-        if known and impossible:
-            known = 0 <= row["stop_time_s"] <= row["length_s"] and row["length_s"] > 0
-        found.append(definition(**given) if known else None)
+        found.append(None if None in given.values() else definition(**given))
+    return found
+
+
+def by_definition_in_time(rows, definition):
+    """The same of what follows from correct and times: a wrong guess needs no stop."""
+    found = []
+    for _, _, correct, stop_time_s, length_s, _ in rows:
+        too_long = None not in (stop_time_s, length_s) and stop_time_s > length_s
+        impossible = too_long or length_s == 0
+        needed = (correct, stop_time_s, length_s) if correct else (correct,)
+        known = None not in needed and not impossible
+        found.append(
+            definition(correct=correct, stop_time_s=stop_time_s, length_s=length_s)
+            if known
+            else None
+        )
     return found
 
 
@@ -56,8 +69,7 @@ def test_whether_guesses_are_correct(rows):
     ids=["time of prediction", "score"],
 )
 def test_what_follows_from_times_and_correct(expression, definition, rows):
-    needed = ("correct", "stop_time_s", "length_s")
-    expected = by_definition(rows, definition, *needed, impossible=True)
+    expected = by_definition_in_time(rows, definition)
     # polars multiplies by 1 / 3 where Python divides by 3
     nearly = [each if each is None else pytest.approx(each, rel=1e-14) for each in expected]
     assert derived(rows, expression) == nearly
