@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,7 +27,8 @@ from .statistics.gee import gee_logistic
 from .statistics.influence import cluster_count
 from .statistics.mixed_model import crossed_logistic
 from .statistics.ordinal_mixed import crossed_ordinal
-from .statistics.outcome import Clusters, Numbers, Outcome
+from .statistics.outcome import Outcome
+from .statistics.participants import by_participant
 from .statistics.permutation import cluster_permutation
 from .statistics.ranks import brunner_munzel, hodges_lehmann, mann_whitney
 from .statistics.rao_scott import rao_scott
@@ -149,20 +150,10 @@ def _shift(given: Outcome) -> TestResult:
 
 def _of_participants(given: Outcome) -> TestResult:
     """Mann-Whitney test of the participants' means."""
-    data = given.present()
-    treatment, reference = (
-        participant_means(data.y[arm], data.participant[arm])
-        for arm in (data.treated, ~data.treated)
-    )
-    return mann_whitney(treatment, reference, given.name, of="participants")
-
-
-def participant_means(y: Numbers, participant: Clusters) -> Numbers:
-    """Return the mean of each participant, in the order of their numbers."""
-    counts = np.bincount(participant)
-    there = counts > 0
-    means: Numbers = np.bincount(participant, y)[there] / counts[there]
-    return means
+    people = by_participant(given)
+    means, treated = people.means, people.treated
+    test = mann_whitney(means[treated], means[~treated], given.name, of="participants")
+    return replace(test, n_missing=people.n_missing)
 
 
 _TWO_WAY = {

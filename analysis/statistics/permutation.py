@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from . import subset_sums
 from .codes import CONSTANT_OUTCOME
 from .outcome import Numbers, Outcome
+from .participants import by_participant
 from .result import TestResult
 from .subset_sums import Scores
 
@@ -34,7 +35,6 @@ class ClusterPermutation(TestResult):
     """Permutation test of the difference of the arms' means of participants' means.
 
     `exact`: p is the share of all `relabellings`; else that many were drawn at random.
-    `n_missing` counts trials.
     """
 
     p: float
@@ -53,19 +53,17 @@ def cluster_permutation(outcome: Outcome, rng: np.random.Generator) -> ClusterPe
     belongs to one arm. EmptyArmError if an arm has no value. Source: Streitberg and Röhmel (1986),
     shift algorithm; Phipson and Smyth (2010), p from draws.
     """
-    data = outcome.present()
-    trials = np.bincount(data.participant)
-    sums = np.bincount(data.participant, data.y).astype(np.float64)
-    treated = np.bincount(data.participant, data.treated) > 0
-    means = sums / trials
-    p, exact, relabellings = _permute(means, _whole(sums, trials), treated, rng)
+    people = by_participant(outcome)
+    means, treated = people.means, people.treated
+    whole = _whole(people.sums, people.trials)
+    p, exact, relabellings = _permute(means, whole, treated, rng)
     return ClusterPermutation(
         estimate=float(means[treated].mean() - means[~treated].mean()),
         null=0.0,
         unit=outcome.unit,
         p=p,
         n=len(means),
-        n_missing=outcome.n_missing,
+        n_missing=people.n_missing,
         method="difference of participants' means, participants permuted between the arms, "
         + ("exact" if exact else f"Monte Carlo of {relabellings:,} draws"),
         source="Streitberg and Röhmel (1986), Statistical Software Newsletter 12, 10-17"
