@@ -65,7 +65,8 @@ class Source:
 class Study:
     """The checked tables of a study, whole; `participants` is None without such a table.
 
-    `renamed` pairs the file's column names with those of the contract.
+    Rows are in the order of participants and their trials, because the last digits of sums depend
+    on the order. `renamed` pairs the file's column names with those of the contract.
     """
 
     trials: pl.DataFrame
@@ -83,12 +84,13 @@ def read_study(path: Path, mapping: TableMapping) -> Study:
     trials, renamed = _read_trials(trials_path, mapping)
     source = _source(trials_path, trials)
     if participants_path is None:
-        return Study(trials.drop(ROW), None, (source,), renamed)
+        return Study(_in_order(trials, TRIALS), None, (source,), renamed)
     people = read_rows(PARTICIPANTS, participants_path)
     raise_first(participants_path.name, participant_problems(people))
     raise_first(trials_path.name, membership_problems(trials, people, participants_path.name))
     sources = source, _source(participants_path, people)
-    return Study(trials.drop(ROW), people.drop(ROW), sources, renamed)
+    in_order = _in_order(trials, TRIALS), _in_order(people, PARTICIPANTS)
+    return Study(*in_order, sources, renamed)
 
 
 def _find(path: Path) -> tuple[Path, Path | None]:
@@ -159,6 +161,11 @@ def _with_measures(trials: pl.DataFrame) -> pl.DataFrame:
         recorded = pl.col("correct") if "correct" in trials.columns else pl.lit(None, pl.Boolean)
         trials = trials.with_columns(correct=recorded.fill_null(derive.CORRECT))
     return trials.with_columns(prediction_time_s=derive.PREDICTION_TIME_S)
+
+
+def _in_order(rows: pl.DataFrame, table: Table) -> pl.DataFrame:
+    """Leave the file's order, which only errors tell, for that of the table's key."""
+    return rows.drop(ROW).sort(table.key)
 
 
 def _source(path: Path, rows: pl.DataFrame) -> Source:

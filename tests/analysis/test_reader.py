@@ -301,12 +301,23 @@ def test_what_tells_a_trial_apart_is_never_missing(tmp_path, column):
     assert (error.row, error.column) == (3, column)
 
 
-def test_the_order_of_rows_changes_no_measure(export):
-    frame = pl.read_csv(export / "trials.csv", infer_schema=False)
-    frame.sample(fraction=1, shuffle=True, seed=3).write_csv(export / "shuffled.csv")
-    key = ["participant", "trial_index"]
-    shuffled = read_dataset(export / "shuffled.csv").trials.sort(key)
-    assert shuffled.equals(read_dataset(export / "trials.csv").trials.sort(key))
+def test_the_order_of_rows_in_the_files_changes_nothing(export, tmp_path):
+    for name in ("trials.csv", "participants.csv"):
+        frame = pl.read_csv(export / name, infer_schema=False)
+        (tmp_path / "shuffled").mkdir(exist_ok=True)
+        frame.sample(fraction=1, shuffle=True, seed=3).write_csv(tmp_path / "shuffled" / name)
+    shuffled, whole = read_dataset(tmp_path / "shuffled"), read_dataset(export)
+    assert shuffled.trials.equals(whole.trials)
+    assert people_of(shuffled).equals(people_of(whole))
+
+
+def test_a_wrong_guess_takes_the_full_length_even_if_its_stop_is_not_known(tmp_path):
+    rows = foreign_rows()
+    for row, right in zip(rows, (0, 1, 0, 1), strict=True):
+        row["correct"] = right
+        row["stop_time"] = None
+    trials = read_dataset(as_csv(tmp_path / "t.csv", rows)).trials
+    assert trials["prediction_time_s"].to_list() == [20.0, None, 20.0, None]
 
 
 def test_golden_penalised_time(golden):

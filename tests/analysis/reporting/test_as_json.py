@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import random
 from dataclasses import replace
 
 import pytest
@@ -80,6 +81,16 @@ def test_the_papers_block_keeps_its_numbers(report):
     assert f"{block['correct']['test']['statistic']:.3f}" == "48.864"
     assert block["prediction_time"]["arms"]["polmdp"]["mean"] == pytest.approx(15.6701020408)
     assert block["confidence"]["test"]["u_treatment"] == 278397
+
+
+def test_the_order_of_rows_changes_nothing_but_the_inputs_hash(report, paper_fixture, tmp_path):
+    head, *rows = paper_fixture.read_text().splitlines()
+    random.Random(2).shuffle(rows)
+    shuffled = tmp_path / paper_fixture.name
+    shuffled.write_text("\n".join([head, *rows]) + "\n")
+    found = json.loads(json.dumps(as_json(analyse_path(shuffled))))
+    assert found.pop("inputs") != report["inputs"]
+    assert found == {name: part for name, part in report.items() if name != "inputs"}
 
 
 def test_it_names_its_input_its_plan_its_seed_and_its_software(report, paper_fixture, paper):
