@@ -106,11 +106,13 @@ def _scenarios_not_shared(data: Dataset) -> list[Notice]:
 
 def _fewer_trials_than_planned(data: Dataset) -> list[Notice]:
     planned = data.plan.trials_per_participant
-    trials = data.trials.group_by("participant").len("trials")["trials"]
-    n = int((trials < planned).sum())
+    trials = data.trials.group_by("participant").len("trials")["trials"].to_numpy()
+    n, most = int((trials < planned).sum()), trials.max()
     if not n:
         return []
     text = f"Participants with fewer than the plan's {planned} trials: {n} of {len(trials)}."
+    if most < planned:
+        text = f"Nobody has the plan's {planned} trials; the most that anyone has are {most}."
     return [Notice("fewer_trials_than_planned", "participants", text)]
 
 

@@ -10,6 +10,7 @@ import polars as pl
 from .arms import Arms
 from .completion import completion
 from .exclusions import Excluded
+from .plan import Plan
 
 _WITHDREW = (pl.col("status") == "withdrawn", "withdrew")
 
@@ -46,7 +47,7 @@ class Flow:
 
 
 def participant_flow(
-    arms: Arms,
+    plan: Plan,
     trials: pl.DataFrame,
     participants: pl.DataFrame | None,
     others: Mapping[str, int],
@@ -57,13 +58,12 @@ def participant_flow(
     `trials` are those of both arms before exclusions; `others` counts the participants with
     trials of each further condition.
     """
-    people, _ = completion(trials, participants)
+    arms, known = plan.arms, completion(trials, participants, plan.trials_per_participant)
+    people, finished = known.people, known.finished
     if participants is None:
         before = _before_by_trials(people, others)
-        finished = "answered as many trials as anyone"
     else:
         before = _before_by_table(arms, people, participants)
-        finished = "completed the study"
     out = [name for each in excluded for name in each.participants]
     kept = people.filter(~pl.col("participant").is_in(out))
     answered = Step(

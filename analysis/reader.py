@@ -53,7 +53,7 @@ def read_dataset(
         with_simulated=with_simulated,
         other_conditions=_by_condition(others, pl.len()),
         excluded=excluded,
-        flow=participant_flow(plan.arms, trials, participants, others_by_condition, excluded),
+        flow=participant_flow(plan, trials, participants, others_by_condition, excluded),
         renamed=study.renamed,
         confidence_scale=mapping.confidence,
     )

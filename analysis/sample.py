@@ -36,8 +36,9 @@ class Sample:
 
 def sample(data: Dataset) -> Sample:
     """Count participants and trials per condition."""
-    each, meaning = completion(data.trials, data.participants)
-    return Sample({arm: _arm_size(data, each, arm) for arm in data.arms.names}, meaning)
+    found = completion(data.trials, data.participants, data.plan.trials_per_participant)
+    arms = {arm: _arm_size(data, found.people, arm) for arm in data.arms.names}
+    return Sample(arms, found.incomplete)
 
 
 def _arm_size(data: Dataset, each: pl.DataFrame, arm: str) -> ArmSize:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
 import polars as pl
 
 from .completion import completion
@@ -43,9 +42,10 @@ class Sensitivity:
 def sensitivity(data: Dataset) -> Sensitivity:
     """Repeat the primary tests with completers only, and with everybody's whole list."""
     dropout, counted = _dropout(data)
-    done = completion(data.trials, data.participants)[0].sort("participant")["done"].to_numpy()
-    most = int(np.bincount(outcome(data, "correct").participant).max())
-    known = most >= data.plan.trials_per_participant
+    planned = data.plan.trials_per_participant
+    people = completion(data.trials, data.participants, planned).people.sort("participant")
+    done = people["done"].to_numpy()
+    known = people.select(pl.col("trials").max()).item() >= planned
     filled_in = {each.measure: _worst(data, each.measure) for each in data.plan.primary}
     return Sensitivity(
         dropout=dropout,
@@ -57,11 +57,7 @@ def sensitivity(data: Dataset) -> Sensitivity:
         intention_to_treat={
             each.measure: primary_test(
                 each,
-                intention_to_treat(
-                    outcome(data, each.measure),
-                    data.plan.trials_per_participant,
-                    filled_in[each.measure],
-                ),
+                intention_to_treat(outcome(data, each.measure), planned, filled_in[each.measure]),
             )
             for each in data.plan.primary
         }
@@ -74,8 +70,8 @@ def sensitivity(data: Dataset) -> Sensitivity:
 def _dropout(data: Dataset) -> tuple[Dropout, str]:
     """Compare the arms' shares of those who left, of all whom the tables know."""
     if data.participants is None:
-        people, incomplete = completion(data.trials, None)
-        counted = f"participants with a trial; left: {incomplete}"
+        known = completion(data.trials, None, data.plan.trials_per_participant)
+        people, counted = known.people, f"participants with a trial; left: {known.incomplete}"
     else:
         people = data.participants.filter(pl.col("condition").is_in(data.arms.names))
         people = people.with_columns(done=pl.col("status") == COMPLETED)

@@ -103,7 +103,7 @@ def test_without_their_table_incomplete_are_those_with_fewer_trials(tmp_path):
     found = sample(read_dataset(path))
     assert found.arms["optimal"].incomplete == 1
     assert found.arms["optimal"].without_trials is None
-    assert found.incomplete_means == "fewer than 3 trials"
+    assert found.incomplete_means == "fewer than 3 trials, the most that anyone has"
 
 
 def test_who_was_dealt_a_place_and_answered_nothing_is_counted(tmp_path):

@@ -68,6 +68,13 @@ def test_participants_with_fewer_trials_than_planned_are_counted(told):
     assert told(rows)["fewer_trials_than_planned"].endswith("the plan's 10 trials: 1 of 20.")
 
 
+def test_a_plan_that_deals_more_trials_than_anyone_has_is_told_so(told):
+    found = told(many(10, 9))
+    assert found["fewer_trials_than_planned"] == (
+        "Nobody has the plan's 10 trials; the most that anyone has are 9."
+    )
+
+
 def test_exclusions_are_told_with_their_number(told):
     plan = '[[exclusions]]\nrule = "incomplete"\nfewer_than = 10'
     assert told([*many(10, 10), trial_row("late", 1, "polmdp")], plan) == {

@@ -15,7 +15,7 @@ from analysis.plan import default_plan
 from analysis.tables import frame_of
 from tests.analysis.rows import START, participant_row, participants_of, six_participants
 
-ARMS = default_plan().arms
+PLAN = default_plan()
 TEXTS = {"participant": pl.String, "condition": pl.String}
 
 
@@ -108,7 +108,7 @@ def test_a_single_table_of_trials_begins_with_the_answers(tmp_path):
 
 PEOPLE = st.lists(
     st.tuples(
-        st.sampled_from([None, *ARMS.names]),
+        st.sampled_from([None, *PLAN.arms.names]),
         st.sampled_from(STATUSES),
         st.booleans(),
         st.booleans(),
@@ -146,7 +146,7 @@ def test_each_step_less_those_who_left_is_the_next(people):
         Excluded(Exclusion("same_guess", {}), tuple(names[:1])),
         Excluded(Exclusion("duplicate_stimuli", {}), tuple(names[1:3])),
     )
-    flow = participant_flow(ARMS, answers, everyone, {}, taken)
+    flow = participant_flow(PLAN, answers, everyone, {}, taken)
     assert flow.steps[0].reached.total == len(people)
     assert flow.steps[-1].reached.total == max(0, len(names) - 3)
     for step, following in pairwise(flow.steps):

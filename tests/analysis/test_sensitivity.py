@@ -66,4 +66,4 @@ def test_without_a_participants_table_those_with_fewer_trials_left(tmp_path):
     data = read_dataset(write_table(TRIALS, rows, tmp_path)[0], THREE_TRIALS)
     found = sensitivity(data)
     assert (found.dropout.left_treatment, found.dropout.participants_treatment) == (1, 4)
-    assert found.counted == "participants with a trial; left: fewer than 3 trials"
+    assert found.counted == "participants with a trial; left: fewer than the plan's 3 trials"
