@@ -90,12 +90,13 @@ def crossed_test(
             if factor is not None:
                 sds[i] = 0.0 if fit.sds[i] < _NO_SD else float(fit.sds[i])
         inference = _inference(data, fit, warnings + (ZERO_VARIANCE,) * (0.0 in sds))
+    within = "" if factors[2] is None else " with scenarios within arms"
     result = CrossedResult(
         **inference,
         unit="log odds",
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method=method,
+        method=f"{method}{within}, maximum likelihood by Laplace's approximation",
         source=source,
         odds_ratio=_exp(inference["estimate"]),
         odds_ratio_low=_exp(inference["low"]),

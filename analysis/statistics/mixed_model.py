@@ -49,7 +49,7 @@ def crossed_logistic(outcome: Outcome, interaction: bool = True) -> CrossedLogis
     result, fit = crossed_test(
         outcome,
         interaction=interaction,
-        method="Crossed logistic mixed model, maximum likelihood by Laplace's approximation",
+        method="Crossed logistic mixed model",
         source="Breslow and Clayton (1993); agrees with R glmmTMB",
     )
     difference = low = high = None

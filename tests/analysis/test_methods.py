@@ -6,6 +6,7 @@ import pytest
 
 from analysis import methods, read_dataset
 from analysis.methods import INDEPENDENT, compare, methods_of
+from analysis.statistics.crossed_test import CrossedResult
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +35,16 @@ def test_a_method_that_would_take_too_long_is_left_out_and_says_so(data, monkeyp
     found = compare(data, primary_of(data, "confidence"))
     assert "crossed_ordinal" not in found.results
     assert found.left_out == {"crossed_ordinal": "takes too long above 1,499 trials"}
+
+
+@pytest.mark.parametrize(
+    ("measure", "model"), [("correct", "crossed_logistic"), ("confidence", "crossed_ordinal")]
+)
+def test_mixed_models_let_scenarios_differ_between_the_arms(data, measure, model):
+    found = compare(data, primary_of(data, measure)).results[model]
+    assert isinstance(found, CrossedResult)
+    assert found.sd_scenario_in_arm
+    assert "with scenarios within arms, maximum likelihood" in found.method
 
 
 def test_methods_that_estimate_the_same_agree(data):

@@ -71,7 +71,7 @@ def test_golden_logistic(golden, paper_fixture, case_id, interaction):
 def test_golden_ordinal(golden, paper_fixture):
     """R ordinal::clmm on synthetic trials."""
     case = golden("clmm_fixture")
-    found = crossed_ordinal(of_fixture(paper_fixture, "confidence"))
+    found = crossed_ordinal(of_fixture(paper_fixture, "confidence"), interaction=False)
     holds(
         case,
         {
@@ -198,10 +198,46 @@ def test_counting_wrong_guesses_flips_the_sign():
     assert other.se == pytest.approx(one.se, abs=1e-6)
 
 
-def test_two_ratings_make_the_logistic_model():
+@pytest.mark.parametrize("interaction", [False, True])
+def test_two_ratings_make_the_logistic_model(interaction):
     data = made(7)
-    one, other = crossed_logistic(data, interaction=False), crossed_ordinal(data)
+    one, other = (test(data, interaction) for test in (crossed_logistic, crossed_ordinal))
     assert (other.estimate, other.se, other.p) == (one.estimate, one.se, one.p)
+
+
+def test_the_golden_logistic_is_that_of_two_ratings_with_scenarios_that_differ_between_arms(
+    golden, paper_fixture
+):
+    """R glmmTMB 1.1 (Laplace) on synthetic trials."""
+    found = crossed_ordinal(of_fixture(paper_fixture, "correct"))
+    holds(
+        golden("glmm_crossed_x_fixture"),
+        {"b1": found.estimate, "se_b1": found.se, "loglik": found.log_likelihood},
+    )
+
+
+def test_scenarios_that_differ_between_the_arms_are_counted_into_the_error_of_ratings():
+    """statsmodels' OrderedModel of each scenario, and the standard error of their mean effect.
+
+    It is .53; without a term for scenarios within arms the model's is .14.
+    """
+    from statsmodels.miscmodels.ordinal_model import OrderedModel
+
+    rng = np.random.default_rng(0)
+    participant, scenario = (each.ravel() for each in np.indices((60, 12)))
+    treated = participant % 2 == 0
+    differing = rng.normal(0, 1.5, (2, 12))[treated.astype(np.int64), scenario]
+    y = np.digitize(differing + rng.logistic(size=len(scenario)), [-1, 1])
+    effects = [
+        OrderedModel(y[own], treated[own][:, None].astype(float), distr="logit")
+        .fit(method="bfgs", disp=0)
+        .params[0]
+        for own in (scenario == each for each in range(12))
+    ]
+    found = crossed_ordinal(
+        Outcome("confidence", "points", y * 1.0, treated, participant, scenario)
+    )
+    assert defined(found).se == pytest.approx(np.std(effects) / 12**0.5, rel=0.1)
 
 
 def test_only_the_order_of_ratings_matters():
