@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import polars as pl
 
@@ -22,7 +22,7 @@ class Dataset:
     `trials` has the columns of the contract that its file has, and always participant, condition,
     scenario, trial_index, stop_time_s, length_s, correct, prediction_time_s and confidence, the
     last five null where missing; and `treated`, whether the trial is of the treatment.
-    `participants` is None without such a table.
+    `participants` is None without such a table. The frames before exclusions are of the same kinds.
 
     `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
@@ -33,6 +33,8 @@ class Dataset:
     plan: Plan
     trials: pl.DataFrame
     participants: pl.DataFrame | None
+    trials_before_exclusions: pl.DataFrame
+    participants_before_exclusions: pl.DataFrame | None
     sources: tuple[Source, ...]
     simulated: int
     preview: int
@@ -47,6 +49,15 @@ class Dataset:
     def arms(self) -> Arms:
         """The two conditions that are compared."""
         return self.plan.arms
+
+    @property
+    def before_exclusions(self) -> Dataset:
+        """The data with whom the exclusions took: everybody who was dealt one of the arms."""
+        return replace(
+            self,
+            trials=self.trials_before_exclusions,
+            participants=self.participants_before_exclusions,
+        )
 
 
 def outcome(data: Dataset, measure: str) -> Outcome:

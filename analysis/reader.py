@@ -37,6 +37,7 @@ def read_dataset(
     compared = pl.col("condition").is_in(plan.arms.names)
     trials, others = chosen.filter(compared), chosen.filter(~compared)
     _check_arms(plan, trials, _why_empty(plan, len(study.trials) - len(chosen), others))
+    trials = trials.with_columns(treated=pl.col("condition") == plan.arms.treatment.condition)
     excluded = exclude(plan.exclusions, trials, participants, plan.file)
     out = [name for each in excluded for name in each.participants]
     kept = ~pl.col("participant").is_in(out)
@@ -45,8 +46,10 @@ def read_dataset(
     others_by_condition = _by_condition(others, pl.col("participant").n_unique())
     return Dataset(
         plan=plan,
-        trials=analysed.with_columns(treated=pl.col("condition") == plan.arms.treatment.condition),
+        trials=analysed,
         participants=None if participants is None else participants.filter(kept),
+        trials_before_exclusions=trials,
+        participants_before_exclusions=participants,
         sources=study.sources,
         simulated=_count(study.trials, "simulated"),
         preview=_count(study.trials, "preview"),

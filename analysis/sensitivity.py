@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from .completion import completion
+from .completion import Completion, completion
 from .contract import COMPLETED
 from .dataset import Dataset, outcome
 from .errors import EmptyArmError
@@ -40,29 +40,19 @@ class Sensitivity:
 
 
 def sensitivity(data: Dataset) -> Sensitivity:
-    """Repeat the primary tests with completers only, and with everybody's whole list."""
-    dropout, counted = _dropout(data)
-    planned = data.plan.trials_per_participant
-    people = completion(data.trials, data.participants, planned).people.sort("participant")
-    done = people["done"].to_numpy()
-    known = people.select(pl.col("trials").max()).item() >= planned
-    filled_in = {each.measure: _worst(data, each.measure) for each in data.plan.primary}
+    """Repeat the primary tests with completers only, and with everybody's whole list.
+
+    Completers are of those analysed; who left and everybody's lists are counted before exclusions,
+    which may take the very participants who left.
+    """
+    everybody = data.before_exclusions
+    dropout, counted = _dropout(everybody)
+    filled_in = {each.measure: _worst(everybody, each.measure) for each in data.plan.primary}
     return Sensitivity(
         dropout=dropout,
         counted=counted,
-        completers={
-            each.measure: _tested(each, completers(outcome(data, each.measure), done))
-            for each in data.plan.primary
-        },
-        intention_to_treat={
-            each.measure: primary_test(
-                each,
-                intention_to_treat(outcome(data, each.measure), planned, filled_in[each.measure]),
-            )
-            for each in data.plan.primary
-        }
-        if known
-        else None,
+        completers=_of_completers(data),
+        intention_to_treat=_of_whole_lists(everybody, filled_in),
         filled_in=filled_in,
     )
 
@@ -70,14 +60,41 @@ def sensitivity(data: Dataset) -> Sensitivity:
 def _dropout(data: Dataset) -> tuple[Dropout, str]:
     """Compare the arms' shares of those who left, of all whom the tables know."""
     if data.participants is None:
-        known = completion(data.trials, None, data.plan.trials_per_participant)
-        people, counted = known.people, f"participants with a trial; left: {known.incomplete}"
+        found = _completion(data)
+        people, who, left = found.people, "participants with a trial", found.incomplete
     else:
         people = data.participants.filter(pl.col("condition").is_in(data.arms.names))
         people = people.with_columns(done=pl.col("status") == COMPLETED)
-        counted = "participants dealt a condition; left: study not completed"
+        who, left = "participants dealt a condition", "study not completed"
+    if data.plan.exclusions:
+        who += ", excluded or not"
     treated = (people["condition"] == data.arms.treatment.condition).to_numpy()
-    return differential_dropout(treated, people["done"].to_numpy()), counted
+    return differential_dropout(treated, people["done"].to_numpy()), f"{who}; left: {left}"
+
+
+def _of_completers(data: Dataset) -> dict[str, TestResult | None]:
+    done = _completion(data).people.sort("participant")["done"].to_numpy()
+    return {
+        each.measure: _tested(each, completers(outcome(data, each.measure), done))
+        for each in data.plan.primary
+    }
+
+
+def _of_whole_lists(data: Dataset, filled_in: Mapping[str, float]) -> dict[str, TestResult] | None:
+    planned = data.plan.trials_per_participant
+    if _completion(data).people.select(pl.col("trials").max()).item() < planned:
+        return None
+    return {
+        each.measure: primary_test(
+            each,
+            intention_to_treat(outcome(data, each.measure), planned, filled_in[each.measure]),
+        )
+        for each in data.plan.primary
+    }
+
+
+def _completion(data: Dataset) -> Completion:
+    return completion(data.trials, data.participants, data.plan.trials_per_participant)
 
 
 def _worst(data: Dataset, measure: str) -> float:

@@ -81,10 +81,10 @@ def _meaning(evidence: Evidence, plan: Plan) -> str:
         f"{WORDS[measure].name} {value:.4g}"
         for measure, value in evidence.sensitivity.filled_in.items()
     )
+    everybody = "everybody with a trial" + (", excluded or not," if plan.exclusions else "")
     return (
-        "Intention to treat: everybody with a trial counts with the plan's "
-        f"{plan.trials_per_participant} trials; those not answered count as the worst case "
-        f"({worst})."
+        f"Intention to treat: {everybody} counts with the plan's {plan.trials_per_participant} "
+        f"trials; those not answered count as the worst case ({worst})."
     )
 
 

@@ -5,10 +5,12 @@ from dataclasses import replace
 import pytest
 
 from analysis import PARTICIPANTS, TRIALS, default_plan, read_dataset, write_table
+from analysis.exclusions import Exclusion
 from analysis.sensitivity import sensitivity
 from tests.analysis.rows import participants_of, six_participants, trial_row
 
 THREE_TRIALS = replace(default_plan(), trials_per_participant=3)
+WITHOUT_INCOMPLETE = replace(THREE_TRIALS, exclusions=(Exclusion("incomplete", {"fewer_than": 3}),))
 
 
 def study(tmp_path, rows, left=(), plan=THREE_TRIALS):
@@ -59,6 +61,40 @@ def test_an_arm_that_nobody_completed_has_no_test_of_completers(tmp_path):
 def test_where_the_length_of_the_lists_is_unknown_nothing_is_filled_in(tmp_path):
     found = sensitivity(study(tmp_path, six_participants(), plan=default_plan()))
     assert found.intention_to_treat is None
+
+
+def test_whom_the_plan_excludes_may_have_left_and_is_treated_but_is_no_completer(tmp_path):
+    """P3 and P6 leave after two trials and one; the plan excludes whoever answered fewer than 3."""
+    rows = [
+        row
+        for row in six_participants()
+        if (row["participant"], row["trial_index"]) not in {("P3", 3), ("P6", 2), ("P6", 3)}
+    ]
+    path = write_table(TRIALS, rows, tmp_path)[0]
+    found, ignoring = (
+        sensitivity(read_dataset(path, each)) for each in (WITHOUT_INCOMPLETE, THREE_TRIALS)
+    )
+    assert found.dropout == ignoring.dropout
+    assert (found.dropout.left_treatment, found.dropout.left_reference) == (1, 1)
+    assert found.intention_to_treat == ignoring.intention_to_treat
+    assert found.filled_in == ignoring.filled_in
+    assert found.intention_to_treat is not None
+    # 8 of 9 with polmdp; P4 and P5 have 2 of 3 each, P6 one of 3
+    assert found.intention_to_treat["correct"].estimate == pytest.approx(8 / 9 - 5 / 9)
+    completers = found.completers["correct"]
+    assert completers is not None
+    assert completers.n == 12
+    assert found.counted.startswith("participants with a trial, excluded or not; left: ")
+
+
+def test_of_an_exports_people_the_excluded_may_have_left_too(tmp_path):
+    found = sensitivity(
+        study(tmp_path, six_participants()[:-1], left=["P6"], plan=WITHOUT_INCOMPLETE)
+    )
+    assert (found.dropout.left_reference, found.dropout.participants_reference) == (1, 3)
+    assert found.counted == (
+        "participants dealt a condition, excluded or not; left: study not completed"
+    )
 
 
 def test_without_a_participants_table_those_with_fewer_trials_left(tmp_path):
