@@ -5,14 +5,37 @@ from __future__ import annotations
 from .as_in_paper import PaperBlock
 from .data_notices import Notice, data_notices
 from .dataset import Dataset
+from .evidence import Evidence
+from .statistics.dropout import Dropout
 from .warning_texts import WARNINGS
+from .wording import format_p
 
 _FEW_EXPECTED = 5
 
 
-def notices(data: Dataset, block: PaperBlock) -> list[Notice]:
+def notices(data: Dataset, evidence: Evidence) -> list[Notice]:
     """Collect what limits the numbers, the gravest first."""
-    return data_notices(data) + _about_tests(block) + _about_gaps(data, block)
+    return [
+        *data_notices(data),
+        *_about_dropout(data, evidence.sensitivity.dropout),
+        *_about_tests(evidence.paper),
+        *_about_gaps(data, evidence.paper),
+    ]
+
+
+def _about_dropout(data: Dataset, dropout: Dropout) -> list[Notice]:
+    """Tell that the arms lost different shares: who stayed is no longer dealt at random."""
+    alpha = data.plan.alpha
+    if dropout.p is None or dropout.p >= alpha:
+        return []
+    treatment, reference = data.arms.labels.values()
+    text = (
+        f"Differential dropout: {dropout.left_treatment} of {dropout.participants_treatment} left "
+        f"with {treatment}, {dropout.left_reference} of {dropout.participants_reference} with "
+        f"{reference} (Fisher's exact {format_p(dropout.p, alpha=alpha)}). Those who stayed may "
+        "differ between the arms for other reasons than the condition."
+    )
+    return [Notice("differential_dropout", "participants", text)]
 
 
 def _about_tests(block: PaperBlock) -> list[Notice]:

@@ -41,7 +41,7 @@ def analyse_path(
     """
     data = read_dataset(path, plan, mapping, with_simulated=with_simulated)
     evidence = gather(data)
-    return Results(data, evidence, notices(data, evidence.paper), _packages())
+    return Results(data, evidence, notices(data, evidence), _packages())
 
 
 def _packages() -> dict[str, str]:
