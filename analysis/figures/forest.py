@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import floor, log10
 from typing import TYPE_CHECKING
 
@@ -25,14 +25,14 @@ _MOST_DECIMALS = 4
 
 
 def figure_forest(
-    results: Mapping[str, TestResult], primary: str, effect: str, labels: Labels
+    results: Mapping[str, TestResult], primary: str, effect: str, labels: Labels, alpha: float
 ) -> Drawn:
     """Show the estimate of `effect` and its 95 % interval by each method, the primary one marked.
 
     `results` by the name of the method; `primary` is one of these names, or another if none of
     them is. All must share their unit and their null value, which a line marks: AnalysisError if
-    they do not. A method without an estimate says so. Ratios (null value 1) stand on a logarithmic
-    axis.
+    they do not. A method without an estimate says so; p has the digits that tell it from `alpha`.
+    Ratios (null value 1) stand on a logarithmic axis.
     """
     from matplotlib.ticker import LogLocator, NullLocator
 
@@ -53,7 +53,8 @@ def figure_forest(
         axes.axvline(null, color=FAINT, linestyle="--", linewidth=1, zorder=0)
         axes.set_yticks(range(len(results)), [wrapped(name, 120, 3, bold=True) for name in results])
         for y, (name, result) in enumerate(results.items()):
-            _draw(axes, y, result, decimals, is_primary=name == primary)
+            _draw(axes, y, result, is_primary=name == primary)
+            _write(axes, y, (_estimate(result, decimals), *_p(result, alpha)), bold=name == primary)
             if name == primary:
                 axes.get_yticklabels()[y].set_fontweight("bold")
         axes.set_ylim(len(results) - 0.4, -0.6)
@@ -64,7 +65,7 @@ def figure_forest(
         axes.grid(visible=False)
     seen = "; ".join(
         f"{name}{' (primary)' if name == primary else ''} "
-        f"{_estimate(result, decimals)}, {format_p(result.p)}"
+        f"{_estimate(result, decimals)}, {', '.join(_p(result, alpha)) or 'no test'}"
         for name, result in results.items()
     )
     return Drawn(figure, data, f"Forest of {effect}, {unit}, null value {null:g}: {seen}.")
@@ -103,28 +104,36 @@ def _decimals(data: pl.DataFrame) -> int:
     return min(_MOST_DECIMALS, max(0, 2 - floor(log10(largest))))
 
 
-def _draw(axes: Axes, y: int, result: TestResult, decimals: int, *, is_primary: bool) -> None:
+def _draw(axes: Axes, y: int, result: TestResult, *, is_primary: bool) -> None:
     colour, marker, size = (COLOURS[0], "D", 7) if is_primary else (INK, "o", 5)
     if result.low is not None and result.high is not None:
         axes.plot((result.low, result.high), (y, y), color=colour, linewidth=1.8)
     if result.estimate is not None:
         axes.plot(result.estimate, y, marker, color=colour, markersize=size)
+
+
+def _write(axes: Axes, y: int, lines: Sequence[str], *, bold: bool) -> None:
     axes.annotate(
-        f"{_estimate(result, decimals)}\n{format_p(result.p)}",
+        "\n".join(lines),
         (1, y),
         xycoords=("axes fraction", "data"),
         xytext=(8, 0),
         textcoords="offset points",
         va="center",
         fontsize=SMALL_POINTS,
-        fontweight="bold" if is_primary else "normal",
+        fontweight="bold" if bold else "normal",
     )
 
 
 def _estimate(result: TestResult, decimals: int) -> str:
     if result.estimate is None:
         return "not defined"
-    estimate = f"{result.estimate:.{decimals}f}"
+    estimate = f"{result.estimate:z.{decimals}f}"
     if result.low is None or result.high is None:
         return f"{estimate}, no interval"
-    return f"{estimate} [{result.low:.{decimals}f}, {result.high:.{decimals}f}]"
+    return f"{estimate} [{result.low:z.{decimals}f}, {result.high:z.{decimals}f}]"
+
+
+def _p(result: TestResult, alpha: float) -> tuple[str, ...]:
+    """Return p, nothing for an estimate that is not tested."""
+    return () if result.p is None else (format_p(result.p, alpha=alpha),)

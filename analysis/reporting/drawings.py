@@ -74,7 +74,7 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
             section,
             f"forest_{name}",
             f"Methods that estimate the same effect on {words}.",
-            partial(_forest, compared, labels),
+            partial(_forest, compared, labels, data.plan.alpha),
         )
     section = "Stops, ratings and right guesses"
     yield Drawing(
@@ -109,7 +109,7 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
     )
 
 
-def _forest(compared: Comparison, labels: figures.Labels) -> figures.Drawn:
+def _forest(compared: Comparison, labels: figures.Labels, alpha: float) -> figures.Drawn:
     """Draw the methods whose estimates stand on the primary test's scale."""
     names = {key: name.removesuffix(PRIMARY) for key, name in method_names(compared).items()}
     primary = compared.primary
@@ -120,7 +120,7 @@ def _forest(compared: Comparison, labels: figures.Labels) -> figures.Drawn:
         if (each.unit, each.null, each.of) == (primary.unit, primary.null, primary.of)
     }
     effect = "AUC" if primary.unit == "probability" else "Difference"
-    return figures.figure_forest(same, names[compared.primary_key], effect, labels)
+    return figures.figure_forest(same, names[compared.primary_key], effect, labels, alpha)
 
 
 def _on_scale(result: TestResult, primary: TestResult) -> TestResult:

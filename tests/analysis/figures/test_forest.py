@@ -29,8 +29,8 @@ def result(estimate, low, high, *, p: float | None = 0.04996, unit="share", null
 BOTH = {"two-way": result(0.153, 0.081, 0.225), "on trials": result(0.153, 0.11, 0.196, p=1e-9)}
 
 
-def forest(results, primary="two-way"):
-    return figure_forest(results, primary, "Difference in correct guesses", LABELS)
+def forest(results, primary="two-way", alpha=0.05):
+    return figure_forest(results, primary, "Difference in correct guesses", LABELS, alpha)
 
 
 def written(drawn):
@@ -69,8 +69,22 @@ def test_a_result_without_interval_or_estimate_says_so():
     drawn = forest(
         {"two-way": result(0.153, None, None), "mixed": result(None, None, None, p=None)}
     )
-    assert written(drawn) == ["0.153, no interval\np = .04996", "not defined\np = NA"]
-    assert "mixed not defined, p = NA" in drawn.alt
+    assert written(drawn) == ["0.153, no interval\np = .04996", "not defined"]
+    assert "mixed not defined, no test" in drawn.alt
+
+
+def test_an_estimate_without_a_test_has_no_p():
+    drawn = forest({**BOTH, "Newcombe": result(0.153, 0.108, 0.199, p=None)})
+    assert written(drawn)[2] == "0.153 [0.108, 0.199]"
+    assert drawn.alt.endswith("Newcombe 0.153 [0.108, 0.199], no test.")
+    assert "NA" not in drawn.alt
+
+
+@pytest.mark.parametrize(("alpha", "shown"), [(0.01, "p = .0098"), (0.05, "p = .010")])
+def test_p_falls_on_its_side_of_the_plans_alpha(alpha, shown):
+    drawn = forest({"two-way": result(0.1, 0.0, 0.2, p=0.0098)}, alpha=alpha)
+    assert written(drawn)[0].endswith(f"\n{shown}")
+    assert drawn.alt.endswith(f", {shown}.")
 
 
 @pytest.mark.parametrize("other", [{"unit": "probability"}, {"null": 0.5}])
@@ -94,7 +108,14 @@ def test_ratios_stand_on_a_logarithmic_axis_with_plain_numbers():
 
 @pytest.mark.parametrize(
     ("estimate", "shown"),
-    [(0.0153, "0.0153"), (2.5512, "2.55"), (15.31, "15.3"), (0.0, "0.00"), (1e-17, "0.0000")],
+    [
+        (0.0153, "0.0153"),
+        (2.5512, "2.55"),
+        (15.31, "15.3"),
+        (0.0, "0.00"),
+        (1e-17, "0.0000"),
+        (-1e-17, "0.0000"),
+    ],
 )
 def test_estimates_have_three_digits(estimate, shown):
     drawn = forest({"two-way": result(estimate, estimate - 1, estimate + 1)})

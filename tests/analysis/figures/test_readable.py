@@ -134,7 +134,9 @@ FIGURES: dict[str, Callable[[pl.DataFrame, Labels], Drawn]] = {
     "slopes of time": lambda study, labels: figure_slopes(study, PREDICTION_TIME, labels),
     "confidence levels": figure_confidence_levels,
     "incidence": lambda study, labels: figure_incidence(incidence(study), labels),
-    "forest": lambda _, labels: figure_forest(FOREST, next(iter(FOREST)), "Time, AUC", labels),
+    "forest": lambda _, labels: figure_forest(
+        FOREST, next(iter(FOREST)), "Time, AUC", labels, 0.05
+    ),
     "flow": lambda study, labels: figure_flow(flow(study), labels),
     "calibration": lambda study, labels: figure_calibration(
         accuracy_by_confidence(outcome(study), numbers(study, "confidence"), range(1, 8)),
