@@ -28,8 +28,8 @@ class Conclusion:
 
     `direction` is what was shown of the treatment arm at the plan's alpha, and is concluded from
     `primary` alone, by `p_holm` where the measure is of the family (None elsewhere). `model` is the
-    mixed model beside it, None where there is none; `models_agree` tells whether both fall on the
-    same side of alpha, uncorrected.
+    mixed model beside it, None where there is none; `model_p_holm` and `model_direction` are what
+    its p would make of the same family in the place of the primary test's, "undefined" without one.
     """
 
     hypothesis: str
@@ -39,34 +39,33 @@ class Conclusion:
     direction: Direction
     supported: bool
     model: TestResult | None
-    models_agree: bool | None
+    model_p_holm: float | None
+    model_direction: Direction
+
+    @property
+    def models_agree(self) -> bool | None:
+        """Whether primary test and model show the same; None where either is not defined."""
+        if "undefined" in (self.direction, self.model_direction):
+            return None
+        return self.direction == self.model_direction
 
 
 def conclude(plan: Plan, comparisons: Mapping[str, Comparison]) -> tuple[Conclusion, ...]:
     """Answer each hypothesis of the plan, in its order."""
-    corrected = dict(
-        zip(
-            plan.holm_family,
-            holm([comparisons[measure].primary.p for measure in plan.holm_family]),
-            strict=True,
-        )
-    )
+    family = {measure: comparisons[measure].primary.p for measure in plan.holm_family}
     return tuple(
-        _conclusion(plan.alpha, each.hypothesis, comparisons[each.measure], corrected)
+        _conclusion(plan.alpha, each.hypothesis, comparisons[each.measure], family)
         for each in plan.primary
     )
 
 
 def _conclusion(
-    alpha: float, hypothesis: str, compared: Comparison, corrected: Mapping[str, float | None]
+    alpha: float, hypothesis: str, compared: Comparison, family: Mapping[str, float | None]
 ) -> Conclusion:
     primary = compared.primary
-    p_holm = corrected.get(compared.measure)
-    direction = _direction(primary, p_holm if compared.measure in corrected else primary.p, alpha)
     model = next(filter(None, (compared.results.get(key) for key in MODELS)), None)
-    agree = None
-    if model is not None and model.p is not None and primary.p is not None:
-        agree = (model.p < alpha) == (primary.p < alpha)
+    p_holm, direction = _shown(primary, compared.measure, family, alpha)
+    model_p_holm, model_direction = _shown(model, compared.measure, family, alpha)
     return Conclusion(
         hypothesis=hypothesis,
         measure=compared.measure,
@@ -75,13 +74,21 @@ def _conclusion(
         direction=direction,
         supported=direction == EXPECTED[compared.measure],
         model=model,
-        models_agree=agree,
+        model_p_holm=model_p_holm,
+        model_direction=model_direction,
     )
 
 
-def _direction(primary: TestResult, p: float | None, alpha: float) -> Direction:
-    if p is None or primary.estimate is None:
-        return "undefined"
-    if p >= alpha:
-        return "none"
-    return "more" if primary.estimate > primary.null else "less"
+def _shown(
+    test: TestResult | None, measure: str, family: Mapping[str, float | None], alpha: float
+) -> tuple[float | None, Direction]:
+    """Return p by Holm, the other measures tested by their primary tests, and what it shows."""
+    if test is None or test.p is None or test.estimate is None:
+        return None, "undefined"
+    p_holm = None
+    if measure in family:
+        tested = {**family, measure: test.p}
+        p_holm = dict(zip(tested, holm(list(tested.values())), strict=True))[measure]
+    if (test.p if p_holm is None else p_holm) >= alpha:
+        return p_holm, "none"
+    return p_holm, "more" if test.estimate > test.null else "less"

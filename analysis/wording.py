@@ -34,7 +34,7 @@ def format_alpha(alpha: float) -> str:
 
 def without_zero(value: float, decimals: int) -> str:
     """Write a number that cannot exceed 1 without its leading zero, as APA asks."""
-    return f"{value:.{decimals}f}".replace("0.", ".", 1)
+    return f"{value:z.{decimals}f}".replace("0.", ".", 1)
 
 
 def format_u(u: float) -> str:
@@ -60,7 +60,7 @@ def chi_square_apa(test: ChiSquare) -> str:
 
 def mann_whitney_apa(test: MannWhitney) -> str:
     """Write the test in one line, with the smaller U as the paper prints it and the treatment's."""
-    z = "NA" if test.statistic is None else f"{test.statistic:.2f}"
+    z = "NA" if test.statistic is None else f"{test.statistic:z.2f}"
     return (
         f"U = {format_u(test.u_smaller)}, {format_p(test.p)}, z = {z}, "
         f"n = {test.n_treatment} and {test.n_reference}, "

@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..arms import Arms
-from ..conclusions import Conclusion
+from ..conclusions import Conclusion, Direction
 from ..methods import Comparison
+from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import format_alpha, format_p, percent
 from .document import Finding, Part
-from .effects import effect_of, estimate, interval, statement
+from .effects import beyond, effect_of, estimate, interval, statement
 
 
 @dataclass(frozen=True)
@@ -67,26 +68,41 @@ def means(compared: Comparison, arms: Arms) -> str:
 
 
 def _verdict(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
-    words, label = WORDS[conclusion.measure], arms.treatment.label
+    shown = _shown(conclusion.measure, conclusion.direction, arms)
     match conclusion.direction:
         case "undefined":
             return "not to be tested with these data."
         case "none":
-            return f"no difference shown at alpha = {format_alpha(alpha)}."
-        case "more" | "less" as direction:
-            found = f"{words.more if direction == 'more' else words.less} with {label}"
-            return f"{found}." if conclusion.supported else f"{found}, against the hypothesis."
+            return f"{shown} at alpha = {format_alpha(alpha)}."
+        case "more" | "less":
+            return f"{shown}." if conclusion.supported else f"{shown}, against the hypothesis."
+
+
+def _shown(measure: str, direction: Direction, arms: Arms) -> str:
+    """Say what a test shows: longer with PoLMDP."""
+    if direction not in ("more", "less"):
+        return "no difference shown"
+    words = WORDS[measure]
+    return f"{words.more if direction == 'more' else words.less} with {arms.treatment.label}"
 
 
 def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
     primary = conclusion.primary
     said = [_effect(conclusion, arms)]
     if primary.p is not None:
-        said.append(statement(primary, alpha))
-    if conclusion.p_holm is not None:
-        said[-1] += f", Holm-corrected {format_p(conclusion.p_holm, alpha=alpha)}"
-    reasons = [f"{capital(WARNINGS[code])}." for code in primary.warnings]
-    return " ".join((f"{'; '.join(said)}.", *reasons, _beside(conclusion, alpha))).rstrip()
+        said.append(_tested(primary, conclusion.p_holm, alpha))
+    notes = [f"{capital(WARNINGS[code])}." for code in primary.warnings]
+    if outside := beyond(primary):
+        notes.append(f"{capital(outside)}.")
+    if beside := _beside(conclusion, arms, alpha):
+        notes.append(beside)
+    return " ".join((f"{'; '.join(said)}.", *notes))
+
+
+def _tested(test: TestResult, p_holm: float | None, alpha: float) -> str:
+    """Say statistic and p, and the corrected p of a test that stands in the family."""
+    said = statement(test, alpha)
+    return said if p_holm is None else f"{said}, Holm-corrected {format_p(p_holm, alpha=alpha)}"
 
 
 def _effect(conclusion: Conclusion, arms: Arms) -> str:
@@ -105,14 +121,20 @@ def _effect(conclusion: Conclusion, arms: Arms) -> str:
     )
 
 
-def _beside(conclusion: Conclusion, alpha: float) -> str:
+def _beside(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
     model = conclusion.model
     if model is None or conclusion.models_agree is None:
         return ""
-    told = f"{estimate(model)}, 95 % interval {interval(model)}, {statement(model, alpha)}"
-    if conclusion.models_agree:
-        return f"The mixed model agrees: {told}."
-    return (
-        f"The mixed model falls on the other side of alpha = {format_alpha(alpha)}: {told}. "
-        "The two-way test holds its level better, so the conclusion is drawn from it."
+    told = (
+        f"{estimate(model)}, 95 % interval {interval(model)}, "
+        f"{_tested(model, conclusion.model_p_holm, alpha)}"
     )
+    if not conclusion.models_agree:
+        shown = _shown(conclusion.measure, conclusion.model_direction, arms)
+        return (
+            f"The mixed model disagrees ({shown} at alpha = {format_alpha(alpha)}): {told}. "
+            "The two-way test holds its level better, so the conclusion is drawn from it."
+        )
+    if conclusion.direction == "none":
+        return f"The mixed model shows no difference either: {told}."
+    return f"The mixed model agrees: {told}."

@@ -83,6 +83,8 @@ def _conclusion(conclusion: Conclusion, evidence: Evidence) -> dict[str, Any]:
         "p_holm": conclusion.p_holm,
         "direction": conclusion.direction,
         "supported": conclusion.supported,
+        "model_p_holm": conclusion.model_p_holm,
+        "model_direction": conclusion.model_direction,
         "model_agrees": conclusion.models_agree,
     }
 

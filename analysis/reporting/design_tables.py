@@ -11,7 +11,7 @@ from ..warning_texts import WARNINGS
 from ..wording import percent, without_zero
 from .answers import WORDS
 from .document import Grid, Heading, Items, Paragraph, Part
-from .effects import bracketed, effect_of, interval, statement
+from .effects import beyond, bracketed, effect_of, interval, statement
 
 
 def likeness_parts(evidence: Evidence) -> list[Part]:
@@ -136,5 +136,9 @@ def _tipping_correlation(largest: float | None) -> str:
 
 
 def _notes(named: Iterable[tuple[str, TestResult]]) -> list[Part]:
-    notes = tuple(f"{name}: {WARNINGS[code]}." for name, test in named for code in test.warnings)
-    return [Items(notes)] if notes else []
+    notes = []
+    for name, test in named:
+        notes += [f"{name}: {WARNINGS[code]}." for code in test.warnings]
+        if outside := beyond(test):
+            notes.append(f"{name}: {outside}.")
+    return [Items(tuple(notes))] if notes else []

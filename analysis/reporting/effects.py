@@ -47,9 +47,9 @@ def _coefficient(value: float) -> str:
 
 
 EFFECTS = {
-    "share": Effect("difference", "percentage points", lambda value: f"{100 * value:.1f}"),
-    "s": Effect("difference", "s", "{:.2f}".format),
-    "scale points": Effect("difference", "scale points", "{:.2f}".format),
+    "share": Effect("difference", "percentage points", lambda value: f"{100 * value:z.1f}"),
+    "s": Effect("difference", "s", "{:z.2f}".format),
+    "scale points": Effect("difference", "scale points", "{:z.2f}".format),
     "probability": Effect("AUC", "", _coefficient),
     "phi": Effect("phi", "", _coefficient),
     "correlation": Effect("correlation", "", _coefficient),
@@ -87,6 +87,21 @@ def interval(result: TestResult) -> str:
     return f"{write(result.low)} to {write(result.high)}"
 
 
+def beyond(result: TestResult) -> str:
+    """Say that the interval reaches where no estimate can be; empty where it does not."""
+    if result.unit == "probability":
+        least, possible = 0, "0 to 1, where every AUC lies"
+    elif result.unit == "share" and result.null == 0:
+        least, possible = -1, "-100 to 100 percentage points, where every difference lies"
+    elif result.unit == "share":
+        least, possible = 0, "0 to 100 %, where every share lies"
+    else:
+        return ""
+    if result.low is None or result.high is None or least <= result.low <= result.high <= 1:
+        return ""
+    return f"the interval reaches outside {possible}, and is not cut"
+
+
 def statistic(result: TestResult) -> str:
     """Write the statistic with its degrees of freedom: t(36) = 5.32."""
     if result.statistic is None:
@@ -120,4 +135,4 @@ def _number(result: TestResult) -> str:
     value = result.statistic or 0.0
     if result.symbol == "chi2":
         return f"{value:.3f}"
-    return f"{value:.0f}" if result.symbol == "U" else f"{value:.2f}"
+    return f"{value:.0f}" if result.symbol == "U" else f"{value:z.2f}"

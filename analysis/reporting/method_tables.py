@@ -10,7 +10,7 @@ from ..warning_texts import WARNINGS
 from ..wording import format_p
 from .answers import WORDS, capital
 from .document import Grid, Heading, Items, Part
-from .effects import estimate_cell, interval, statistic
+from .effects import beyond, estimate_cell, interval, statistic
 
 PRIMARY = " (primary)"
 """What the primary test's name ends with."""
@@ -65,5 +65,7 @@ def _notes(compared: Comparison, names: dict[str, str]) -> Iterable[str]:
     for key, result in compared.results.items():
         for code in result.warnings:
             yield f"{names[key]}: {WARNINGS[code]}."
+        if outside := beyond(result):
+            yield f"{names[key]}: {outside}."
     for key, reason in compared.left_out.items():
         yield f"{names[key]}: left out, {reason}."

@@ -18,8 +18,11 @@ from .people_tables import sample_parts, sensitivity_parts
 _TITLE = "what the study shows"
 _HOW = (
     "These tests take both participants and scenarios as drawn from many, so they speak of other "
-    "people and other scenarios too. Tests that take every trial as independent, as the paper "
-    f"does, stand below under {AS_IN_PAPER}."
+    "people and other scenarios too."
+)
+_ELSEWHERE = (
+    "Tests that take every trial as independent, as the paper does, stand below under "
+    f"{AS_IN_PAPER}."
 )
 
 
@@ -66,10 +69,11 @@ def brief_parts(results: Results) -> list[Part]:
 
 def _answer(results: Results) -> list[Part]:
     arms, evidence = results.data.arms, results.evidence
+    tested = any(each.direction != "undefined" for each in evidence.conclusions)
     parts = [
         Heading(f"{capital(arms.treatment.label)} against {arms.reference.label}: {_TITLE}", 1),
         *answers(evidence.conclusions, evidence.comparisons, arms, results.data.plan.alpha),
-        Paragraph(_HOW),
+        Paragraph(f"{_HOW} {_ELSEWHERE}" if tested else _ELSEWHERE),
     ]
     if results.notices:
         noted = tuple(notice.text for notice in results.notices)

@@ -80,11 +80,49 @@ def test_a_test_that_is_not_defined_concludes_nothing_and_does_not_count_for_the
     assert time.p_holm == pytest.approx(0.04)
 
 
-@pytest.mark.parametrize(("p_model", "agree"), [(0.2, False), (0.049, True), (None, None)])
-def test_the_model_beside_agrees_if_it_falls_on_the_same_side_of_alpha(p_model, agree):
-    (correct, *_), _ = concluded(crossed_logistic=result(p_model, unit="log odds"))
+@pytest.mark.parametrize(
+    ("p_model", "effect", "shown", "agree"),
+    [
+        (0.02, 0.8, "more", True),
+        (0.049, 0.8, "more", True),
+        (0.2, 0.8, "none", False),
+        (0.02, -0.8, "less", False),
+        (None, 0.8, "undefined", None),
+    ],
+)
+def test_the_model_beside_agrees_if_it_shows_the_same(p_model, effect, shown, agree):
+    model = result(p_model, estimate=effect, unit="log odds")
+    (correct, *_), _ = concluded(crossed_logistic=model)
+    assert (correct.direction, correct.model_direction) == ("more", shown)
     assert correct.models_agree is agree
-    assert correct.direction == "more"
+
+
+def test_the_model_is_corrected_in_the_place_of_the_primary_test():
+    """Holm by hand, of three: 2 x .038 by the test, 2 x .034 by the model; 3 x .0001 for time."""
+    model = result(0.034, unit="log odds")
+    (correct, time, _), _ = concluded(p=(0.038, 0.0001, 0.091), crossed_logistic=model)
+    assert (correct.p_holm, correct.model_p_holm) == pytest.approx((0.076, 0.068))
+    assert (correct.direction, correct.model_direction, correct.models_agree) == (
+        "none",
+        "none",
+        True,
+    )
+    assert time.p_holm == pytest.approx(0.0003)
+
+
+def test_a_model_outside_of_the_family_is_not_corrected():
+    plan = replace(PLAN, holm_family=("prediction_time_s", "confidence"))
+    model = result(0.034, unit="log odds")
+    (correct, *_), _ = concluded(p=(0.038, 0.04, 0.04), plan=plan, crossed_logistic=model)
+    assert (correct.model_p_holm, correct.model_direction) == (None, "more")
+    assert correct.models_agree
+
+
+def test_a_model_beside_a_test_that_is_not_defined_neither_agrees_nor_is_told():
+    model = result(0.01, unit="log odds")
+    conclusions, comparisons = concluded(p=(None, 0.01, 0.01), crossed_logistic=model)
+    assert conclusions[0].models_agree is None
+    assert "mixed model" not in said(conclusions, comparisons)[0].text
 
 
 def said(conclusions, comparisons):
@@ -98,8 +136,25 @@ def said(conclusions, comparisons):
 def test_a_model_that_disagrees_is_said_to_and_not_followed():
     correct, *_ = said(*concluded(crossed_logistic=result(0.2, unit="log odds")))
     assert correct.verdict == "H1, correct guesses: more with PoLMDP."
-    assert "The mixed model falls on the other side of alpha = .05" in correct.text
+    assert "The mixed model disagrees (no difference shown at alpha = .05): odds" in correct.text
+    assert "t(36) = 2.00, p = .200, Holm-corrected p = .200. The two-way" in correct.text
     assert "the conclusion is drawn from it" in correct.text
+
+
+def test_a_model_that_shows_the_opposite_disagrees():
+    model = result(0.001, estimate=-0.8, unit="log odds")
+    correct, *_ = said(*concluded(crossed_logistic=model))
+    assert "The mixed model disagrees (fewer with PoLMDP at alpha = .05)" in correct.text
+
+
+def test_where_the_test_shows_no_difference_the_model_is_said_to_show_none_either():
+    """Raw p's below alpha on both sides, of which nothing is left by Holm."""
+    model = result(0.034, unit="log odds")
+    correct, *_ = said(*concluded(p=(0.038, 0.0001, 0.091), crossed_logistic=model))
+    assert correct.verdict == "H1, correct guesses: no difference shown at alpha = .05."
+    assert "The mixed model shows no difference either: odds ratio" in correct.text
+    assert "p = .034, Holm-corrected p = .068." in correct.text
+    assert "agrees" not in correct.text
 
 
 def test_a_difference_against_the_hypothesis_is_said_to_be_so():

@@ -75,6 +75,16 @@ def test_the_conclusions_name_the_plans_tests_and_their_corrected_p(report):
     assert corrected == pytest.approx([3 * p[0], 2 * p[1], p[2]])
 
 
+def test_the_conclusions_have_the_models_p_in_the_family_and_what_it_shows(report):
+    """Of confidence, whose p is the largest of the family, Holm leaves p as it is."""
+    correct, time, confidence = report["conclusions"]
+    assert (correct["model_direction"], correct["model_agrees"]) == ("more", True)
+    assert (time["model_p_holm"], time["model_agrees"]) == (None, None)
+    ordinal = report["measures"]["confidence"]["methods"]["crossed_ordinal"]
+    assert confidence["model_p_holm"] == ordinal["p"]
+    assert (confidence["model_direction"], confidence["model_agrees"]) == ("none", True)
+
+
 def test_the_papers_block_keeps_its_numbers(report):
     block = report["as_in_paper"]
     assert block["trials_treated_as_independent"] is True
