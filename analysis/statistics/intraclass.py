@@ -83,7 +83,7 @@ def intraclass_correlation_of_ranks(outcome: Outcome) -> IntraclassCorrelation:
 
 
 def _trials_per_participant(data: Outcome) -> float:
-    """Return the number of trials as it counts for a difference; exactly 1 if all have one."""
+    """Return the number of trials as it counts for a difference, exact if all have the same."""
     (n, squares), (others, their_squares) = (
         (int(arm.sum()), int((np.bincount(data.participant[arm]) ** 2).sum()))
         for arm in (data.treated, ~data.treated)

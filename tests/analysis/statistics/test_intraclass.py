@@ -66,9 +66,11 @@ def test_with_unequal_arms_the_design_effect_is_that_of_the_matrix_of_covariance
     assert design_effect(icc, found.trials_per_participant) == pytest.approx(expected)
 
 
-def test_single_trials_count_as_exactly_one():
-    trials = outcome(range(29), np.arange(29) < 7, range(29), range(29))
-    assert intraclass_correlation(trials).trials_per_participant == 1
+@pytest.mark.parametrize("trials", [1, 10])
+def test_where_all_have_the_same_number_of_trials_exactly_that_number_counts(trials):
+    participant = np.repeat(np.arange(150), trials)
+    found = intraclass_correlation(outcome(participant, participant < 98, participant, participant))
+    assert found.trials_per_participant == trials
 
 
 @pytest.mark.parametrize("measure", ["time", "confidence"])

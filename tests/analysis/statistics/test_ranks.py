@@ -277,6 +277,15 @@ def test_ratings_too_coarse_for_an_interval_of_the_shift_get_none_but_a_warning(
     assert found.warnings == ("coarse_values",)
 
 
+def test_without_ties_the_exact_interval_stays_where_only_the_asymptotic_test_rejects_0():
+    x, y = [5, 6.1, 7.3, 8.2], [1, 2, 3, 5.5]
+    tests = (stats.mannwhitneyu(x, y, False, method=how).pvalue for how in ("exact", "asymptotic"))
+    assert [p < 0.05 for p in tests] == [False, True]
+    found = hodges_lehmann(x, y)
+    assert (found.low, found.warnings) == (-0.5, ())
+    assert found.high == pytest.approx(7.2)
+
+
 def test_the_papers_ratings_have_no_interval_of_the_shift(golden):
     """Its limits would be 0 and 0, and the test rejects that shift: p = .001."""
     levels, *counts = (
