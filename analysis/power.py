@@ -13,6 +13,12 @@ from .simulated_studies import Rejections, Tell, rejections
 
 TARGETS = (0.8, 0.9)
 """Powers for which the number of participants is told."""
+UNCORRECTED = (
+    "A study counts as finding where p of the one test is below .05. The report corrects its "
+    "plan's primary tests, three by default, for one another by Holm's method, which asks for "
+    "p < .05/3 at the strictest: it finds no more often than is told here."
+)
+"""What this power leaves out, for who reads it."""
 SMALLEST, LARGEST = 20, 2560
 """Numbers of participants between which a search looks."""
 _PILOT = 4

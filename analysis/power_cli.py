@@ -55,9 +55,10 @@ def power(
 ) -> None:
     """Say how many participants a study needs: simulate it and count how often tests find.
 
-    The tests are the report's own. Trials come from participants crossed with scenarios, on the
-    logit scale; p1 and p2, or auc, hold over all people and scenarios together. The mixed model
-    takes a hundred times as long as the two-way test.
+    The tests are the report's own, each by itself at p < .05. The report corrects its primary
+    tests for one another by Holm's method, so it finds no more often. Trials come from participants
+    crossed with scenarios, on the logit scale; p1 and p2, or auc, hold over all people and
+    scenarios together. The mixed model takes a hundred times as long as the two-way test.
 
     Example: goalguess power --p1 .80 --p2 .70 --participants 80,120,160 --to power
     """
@@ -95,7 +96,8 @@ def power(
 
 
 def _told(power: Power) -> str:
-    from .reporting.document import Grid, Items
+    from .power import UNCORRECTED
+    from .reporting.document import Grid, Items, Paragraph
     from .reporting.plain import plain_text
 
     rows = tuple(
@@ -113,7 +115,7 @@ def _told(power: Power) -> str:
     question = power.question
     caption = (
         f"Power for {question.model.measure}: {question.trials_each} trials of each participant, "
-        f"{question.scenarios} scenarios, alpha = .05"
+        f"{question.scenarios} scenarios, p < .05 uncorrected"
     )
     needed = tuple(
         f"{each.test.replace('_', ' ')}, {100 * each.power:g} %: "
@@ -125,4 +127,5 @@ def _told(power: Power) -> str:
         )
         for each in power.needed
     )
-    return plain_text([Grid(caption, header, rows), Items(needed)]).rstrip()
+    table = Grid(caption, header, rows)
+    return plain_text([table, Items(needed), Paragraph(UNCORRECTED)]).rstrip()

@@ -10,7 +10,8 @@ from pathlib import Path
 from .figures.drawn import write_figure
 from .figures.power import figure_power, power_table
 from .files import folder_for_writing, replacing
-from .power import Power
+from .power import UNCORRECTED, Power
+from .simulated_studies import ALPHA
 
 SCHEMA_VERSION = 1
 """Of power.json: rises when a field is renamed, moved or changes its meaning."""
@@ -26,6 +27,8 @@ def write_power(power: Power, folder: Path) -> None:
         "question": asdict(power.question),
         "points": power_table(power).to_dicts(),
         "curves": {test: asdict(power.curve(test)) for test in power.question.tests},
+        "alpha": ALPHA,
+        "uncorrected": UNCORRECTED,
         "needed": [asdict(each) for each in power.needed],
     }
     with folder_for_writing(folder):

@@ -161,6 +161,10 @@ def test_the_command_prints_the_table_and_writes_what_it_rests_on(tmp_path):
     }
     content = json.loads((folder / "power.json").read_text())
     assert content["question"]["seed"] == 3
+    assert content["alpha"] == 0.05
+    for said in (content["uncorrected"], result.stdout):
+        assert "Holm's method, which asks for p < .05/3" in " ".join(said.split())
+    assert "p < .05 uncorrected" in result.stdout
     assert content["question"]["model"]["spread"] == {
         "participant": 0.8,
         "scenario": 0.8,
@@ -169,6 +173,11 @@ def test_the_command_prints_the_table_and_writes_what_it_rests_on(tmp_path):
     table = pl.read_csv(folder / "power.csv").to_dicts()
     assert content["points"] == table
     assert [row["participants"] for row in table] == [20, 40]
+
+
+def test_the_help_says_that_power_is_that_of_one_test_uncorrected():
+    said = " ".join(run("--help").stdout.split())
+    assert "each by itself at p < .05. The report corrects its" in said
 
 
 @pytest.mark.parametrize(
