@@ -87,6 +87,18 @@ def test_whom_the_plan_excludes_may_have_left_and_is_treated_but_is_no_completer
     assert found.counted.startswith("participants with a trial, excluded or not; left: ")
 
 
+def test_who_finished_and_is_excluded_is_no_completer_but_sets_the_worst_case(tmp_path):
+    rows = [row for row in six_participants() if row["participant"] != "P2"]
+    rows += [trial_row("P2", n, "polmdp", length_s=38.0, paused_s=30.0) for n in (1, 2, 3)]
+    plan = replace(THREE_TRIALS, exclusions=(Exclusion("long_pauses", {"above_s": 60.0}),))
+    found = sensitivity(study(tmp_path, rows, plan=plan))
+    completers = found.completers["correct"]
+    assert completers is not None
+    assert found.intention_to_treat is not None
+    assert (completers.n, found.intention_to_treat["correct"].n) == (15, 18)
+    assert found.filled_in["prediction_time_s"] == pytest.approx((15 * 20 + 3 * 38) / 18)
+
+
 def test_of_an_exports_people_the_excluded_may_have_left_too(tmp_path):
     found = sensitivity(
         study(tmp_path, six_participants()[:-1], left=["P6"], plan=WITHOUT_INCOMPLETE)
