@@ -22,7 +22,8 @@ class Dataset:
     `trials` has the columns of the contract that its file has, and always participant, condition,
     scenario, trial_index, stop_time_s, length_s, correct, prediction_time_s and confidence, the
     last five null where missing; and `treated`, whether the trial is of the treatment.
-    `participants` is None without such a table. The frames before exclusions are of the same kinds.
+    `participants` is None without such a table. Both have whom the exclusions took, too, in
+    `trials_before_exclusions` and `participants_before_exclusions`.
 
     `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`

@@ -58,8 +58,9 @@ def participant_flow(
     `trials` are those of both arms before exclusions; `others` counts the participants with
     trials of each further condition.
     """
-    arms, known = plan.arms, completion(trials, participants, plan.trials_per_participant)
-    people, finished = known.people, known.finished
+    arms = plan.arms
+    found = completion(trials, participants, plan.trials_per_participant)
+    people, finished = found.people, found.finished
     if participants is None:
         before = _before_by_trials(people, others)
     else:
