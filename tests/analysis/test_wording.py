@@ -87,6 +87,11 @@ def test_mann_whitney_prints_both_us():
     assert "U of the treatment = 6" in line
 
 
+def test_a_z_next_to_0_has_no_sign():
+    ranks = list(range(100))
+    assert ", z = 0.00, " in mann_whitney_apa(mann_whitney(ranks, [*ranks[:-1], 99.5]))
+
+
 def test_an_undefined_normality_says_so():
     assert normality_apa(normality([1.0])) == "Shapiro-Wilk: not defined, n = 1"
 

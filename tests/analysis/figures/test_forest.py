@@ -93,6 +93,10 @@ def test_results_of_different_units_or_null_values_are_refused(other):
         forest({"two-way": result(0.1, 0, 0.2), "other": result(0.6, 0.5, 0.7, **other)})
 
 
+def test_bounds_next_to_0_have_no_sign():
+    assert written(forest({"two-way": result(0.1, -1e-9, 0.2)}))[0].startswith("0.100 [0.000, 0.2")
+
+
 def test_no_result_is_refused():
     with pytest.raises(AnalysisError, match="got no result"):
         forest({})

@@ -107,7 +107,9 @@ def test_an_interval_wider_than_possible_is_said_to_be_in_the_answer_and_in_the_
     _, time, _ = (part for part in parts if isinstance(part, Finding))
     assert "AUC = .279, 95 % interval -.042 to .600" in time.text
     assert f"T{outside}" in time.text
-    assert f"- AUC, clustered by participant and scenario (primary): t{outside}" in markdown(parts)
+    text = markdown(parts)
+    assert f"- AUC, clustered by participant and scenario (primary): t{outside}" in text
+    assert "- PoLMDP: the interval reaches outside 0 to 100 %, where every share lies" in text
 
 
 def test_no_number_is_printed_as_nan_or_none(paper, tmp_path):
