@@ -3,8 +3,8 @@
 from .statistics import codes
 
 WARNINGS = {
-    codes.COARSE_VALUES: "values are tied so often that an interval would hold a shift of 0, which "
-    "the test rejects, or no range of shifts at all, so there is none; the AUC tells more",
+    codes.COARSE_VALUES: "values are tied so often that an interval would be a single shift, or "
+    "hold 0 though the Mann-Whitney test rejects it; it is left out, and the AUC tells more",
     codes.CONSTANT_OUTCOME: "all values are equal, so the test is not defined",
     codes.DEGENERATE_MARGIN: "all guesses were alike, so the arms cannot be told apart",
     codes.FEW_CLUSTERS: "fewer than 10 participants in an arm, or scenarios; interval and p are "

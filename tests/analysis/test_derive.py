@@ -44,13 +44,9 @@ def by_definition_in_time(rows, definition):
     for _, _, correct, stop_time_s, length_s, _ in rows:
         too_long = None not in (stop_time_s, length_s) and stop_time_s > length_s
         impossible = too_long or length_s == 0
-        needed = (correct, stop_time_s, length_s) if correct else (correct,)
-        known = None not in needed and not impossible
-        found.append(
-            definition(correct=correct, stop_time_s=stop_time_s, length_s=length_s)
-            if known
-            else None
-        )
+        unknown = None in ((correct, stop_time_s, length_s) if correct else (correct,))
+        times = {"stop_time_s": stop_time_s, "length_s": length_s}
+        found.append(None if impossible or unknown else definition(correct=correct, **times))
     return found
 
 
