@@ -78,14 +78,23 @@ def _meaning(evidence: Evidence, plan: Plan) -> str:
             "trials, so it is not known how many trials are missing."
         )
     worst = ", ".join(
-        f"{WORDS[measure].name} {value:.4g}"
-        for measure, value in evidence.sensitivity.filled_in.items()
+        _worst(measure, value) for measure, value in evidence.sensitivity.filled_in.items()
     )
-    everybody = "everybody with a trial" + (", excluded or not," if plan.exclusions else "")
+    began = "all who began" + (", excluded or not," if plan.exclusions else "")
     return (
-        f"Intention to treat: {everybody} counts with the plan's {plan.trials_per_participant} "
-        f"trials; those not answered count as the worst case ({worst})."
+        f"Intention to treat: {began} count with the plan's {plan.trials_per_participant} trials; "
+        f"those not answered count as the worst case ({worst}). To begin is to answer a trial."
     )
+
+
+def _worst(measure: str, value: float) -> str:
+    """Say what stands for a trial never answered."""
+    name = WORDS[measure].name
+    if measure == "correct":
+        return "a wrong guess"
+    if measure == "confidence":
+        return f"{name} {value:g}"
+    return f"{name}: the mean full length, {EFFECTS['s'].with_unit(value)}"
 
 
 def _selection_row(name: str, result: TestResult | None, alpha: float) -> tuple[str, ...]:

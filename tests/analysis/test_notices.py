@@ -62,6 +62,6 @@ def test_dropout_is_noted_below_the_plans_alpha_only(results_of):
 
 def test_who_is_excluded_is_said_to_be_in_the_whole_lists(results_of):
     text = markdown(report_parts(results_of(6, WITHOUT_INCOMPLETE)))
-    assert "everybody with a trial, excluded or not, counts with the plan's 2 trials" in text
+    assert "all who began, excluded or not, count with the plan's 2 trials" in text
     assert "| correct guesses, intention to treat |" in text
-    assert "everybody with a trial counts" in markdown(report_parts(results_of(6)))
+    assert "all who began count" in markdown(report_parts(results_of(6)))
