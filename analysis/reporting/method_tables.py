@@ -15,6 +15,7 @@ from .effects import beyond, estimate_cell, interval, statistic
 PRIMARY = " (primary)"
 """What the primary test's name ends with."""
 
+_CLUSTERED = "taking into account that trials of one participant resemble each other"
 _HEADER = ("", "estimate", "95 % interval", "test", "p", "n")
 
 
@@ -25,7 +26,7 @@ def method_parts(compared: Comparison, alpha: float) -> list[Part]:
     name = capital(words.name)
     parts: list[Part] = [Heading(name, 3)]
     for caption, independent in (
-        (f"{name}, trials of one participant taken as alike", False),
+        (f"{name}, {_CLUSTERED}", False),
         (f"{name}, trials taken as independent", True),
     ):
         keys = [key for key in compared.results if (key in INDEPENDENT) == independent]
