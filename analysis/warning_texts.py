@@ -10,6 +10,8 @@ WARNINGS = {
     codes.FEW_CLUSTERS: "fewer than 10 participants in an arm, or scenarios; interval and p are "
     "rough",
     codes.NOT_CONVERGED: "the fit did not converge, so nothing is estimated",
+    codes.NO_OVERLAP: "the arms do not overlap at all, so the variance of the AUC is 0; the mean "
+    "difference and the permutation of participants tell more",
     codes.NO_VARIATION: "participants do not differ, so there is no standard error",
     codes.ONE_PARTICIPANT: "an arm has a single participant, which does not tell how participants "
     "differ",

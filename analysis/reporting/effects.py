@@ -11,6 +11,8 @@ from ..wording import format_p, without_zero
 
 _LARGEST_LOG = 700.0
 _MANY_DIGITS = 1000
+_PRINTED = 3
+"""Decimals that are printed of an AUC, and of a share (one, as a percentage)."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,7 @@ def interval(result: TestResult) -> str:
 
 
 def beyond(result: TestResult) -> str:
-    """Say that the interval reaches where no estimate can be; empty where it does not."""
+    """Say that the interval as printed reaches where no estimate can be; else empty."""
     if result.unit == "probability":
         least, possible = 0, "0 to 1, where every AUC lies"
     elif result.unit == "share" and result.null == 0:
@@ -97,7 +99,10 @@ def beyond(result: TestResult) -> str:
         least, possible = 0, "0 to 100 %, where every share lies"
     else:
         return ""
-    if result.low is None or result.high is None or least <= result.low <= result.high <= 1:
+    if result.low is None or result.high is None:
+        return ""
+    low, high = round(result.low, _PRINTED), round(result.high, _PRINTED)
+    if least <= low <= high <= 1:
         return ""
     return f"the interval reaches outside {possible}, and is not cut"
 

@@ -11,7 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .codes import FEW_CLUSTERS, ONE_PARTICIPANT, SCENARIOS_NOT_SHARED
+from .codes import (
+    FEW_CLUSTERS,
+    NO_OVERLAP,
+    NO_VARIATION,
+    ONE_PARTICIPANT,
+    SCENARIOS_NOT_SHARED,
+)
 from .inference import FEW, Inference, student, undefined
 from .influence import Influence, cluster_count, cluster_variance, of_auc, of_difference
 from .outcome import UNKNOWN, Outcome
@@ -104,8 +110,10 @@ def clustered_auc(outcome: Outcome) -> ClusteredAuc:
     data = outcome.present()
     influence = of_auc(data)
     treatment, reference = _arms(data, influence)
+    inference = _satterthwaite(influence, 0.5, treatment, reference)
+    inference["warnings"] = _told_apart(influence.estimate, inference["warnings"])
     return ClusteredAuc(
-        **_satterthwaite(influence, 0.5, treatment, reference),
+        **inference,
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
@@ -142,8 +150,10 @@ def two_way_auc(outcome: Outcome) -> TwoWayAuc:
     """
     data = outcome.present()
     influence = of_auc(data)
+    inference = two_way(data, influence, 0.5, *_sharing(data))
+    inference["warnings"] = _told_apart(influence.estimate, inference["warnings"])
     return TwoWayAuc(
-        **two_way(data, influence, 0.5, *_sharing(data)),
+        **inference,
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
@@ -178,6 +188,13 @@ def _satterthwaite(
     return student(
         influence.estimate, null, variance, df, *((FEW_CLUSTERS,) if fewer < FEW else ())
     )
+
+
+def _told_apart(auc: float, warnings: tuple[str, ...]) -> tuple[str, ...]:
+    """Say of arms without overlap, where all placements are equal, that this is why none varies."""
+    if auc not in (0.0, 1.0):
+        return warnings
+    return tuple(NO_OVERLAP if code == NO_VARIATION else code for code in warnings)
 
 
 def _sharing(data: Outcome) -> tuple[str, ...]:

@@ -72,6 +72,8 @@ def test_an_interval_that_reaches_where_no_estimate_can_be_is_said_to(given, sai
     [
         result(-0.1, 0.3),
         result(0.0, 1.0, unit="probability", null=0.5),
+        result(0.884, 1.0004, unit="probability", null=0.5),
+        result(-1.0004, 0.2),
         result(0.0, 1.0, null=1 / 6),
         result(-40.0, 3.0, unit="s"),
         result(),

@@ -255,7 +255,17 @@ def test_arms_that_differ_without_variation_are_not_tested(test):
     found = test(outcome([0.7] * 3 + [0.1] * 3, [1, 1, 1, 0, 0, 0], [*"aabccd"], [*"ststst"]))
     assert found.estimate > found.null
     assert (found.statistic, found.p, found.low) == (None, None, None)
-    assert "no_variation" in found.warnings
+    reason = {"probability": "no_overlap"}.get(found.unit, "no_variation")
+    assert {"no_overlap", "no_variation"} & set(found.warnings) == {reason}
+
+
+@pytest.mark.parametrize("test", [clustered_auc, two_way_auc])
+@pytest.mark.parametrize("swapped", [False, True])
+def test_arms_without_overlap_are_said_to_have_none_whose_participants_differ(test, swapped):
+    treated = np.array([1, 1, 1, 0, 0, 0], dtype=bool) ^ swapped
+    found = test(outcome([5, 7, 6, 1, 3, 2], treated, [*"aabccd"], [*"ststst"]))
+    assert (found.estimate, found.p) == (0.0 if swapped else 1.0, None)
+    assert {"no_overlap", "no_variation"} & set(found.warnings) == {"no_overlap"}
 
 
 @pytest.mark.parametrize("test", TESTS)
