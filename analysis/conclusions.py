@@ -8,6 +8,7 @@ from typing import Literal
 
 from .methods import MODELS, Comparison
 from .plan import Plan
+from .statistics.codes import CONSTANT_OUTCOME
 from .statistics.family import holm
 from .statistics.result import TestResult
 
@@ -52,7 +53,7 @@ class Conclusion:
 
 def conclude(plan: Plan, comparisons: Mapping[str, Comparison]) -> tuple[Conclusion, ...]:
     """Answer each hypothesis of the plan, in its order."""
-    family = {measure: comparisons[measure].primary.p for measure in plan.holm_family}
+    family = {measure: _tested_p(comparisons[measure].primary) for measure in plan.holm_family}
     return tuple(
         _conclusion(plan.alpha, each.hypothesis, comparisons[each.measure], family)
         for each in plan.primary
@@ -79,16 +80,22 @@ def _conclusion(
     )
 
 
+def _tested_p(test: TestResult) -> float | None:
+    """Return p, None where all values are equal: of these, 1 is no verdict."""
+    return None if CONSTANT_OUTCOME in test.warnings else test.p
+
+
 def _shown(
     test: TestResult | None, measure: str, family: Mapping[str, float | None], alpha: float
 ) -> tuple[float | None, Direction]:
     """Return p by Holm, the other measures tested by their primary tests, and what it shows."""
-    if test is None or test.p is None or test.estimate is None:
+    p = None if test is None else _tested_p(test)
+    if test is None or p is None or test.estimate is None:
         return None, "undefined"
     p_holm = None
     if measure in family:
-        tested = {**family, measure: test.p}
+        tested = {**family, measure: p}
         p_holm = dict(zip(tested, holm(list(tested.values())), strict=True))[measure]
-    if (test.p if p_holm is None else p_holm) >= alpha:
+    if (p if p_holm is None else p_holm) >= alpha:
         return p_holm, "none"
     return p_holm, "more" if test.estimate > test.null else "less"

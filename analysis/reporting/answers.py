@@ -89,7 +89,7 @@ def _shown(measure: str, direction: Direction, arms: Arms) -> str:
 def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
     primary = conclusion.primary
     said = [_effect(conclusion, arms)]
-    if primary.p is not None:
+    if conclusion.direction != "undefined":
         said.append(_tested(primary, conclusion.p_holm, alpha))
     notes = [f"{capital(WARNINGS[code])}." for code in primary.warnings]
     if outside := beyond(primary):

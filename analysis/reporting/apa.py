@@ -38,6 +38,11 @@ def apa_sentences(evidence: Evidence, plan: Plan) -> tuple[str, ...]:
 
 def _primary(conclusion: Conclusion, evidence: Evidence, plan: Plan) -> str:
     words = WORDS[conclusion.measure].name
+    tested = (
+        "not to be tested with these data"
+        if conclusion.direction == "undefined"
+        else statement(conclusion.primary, plan.alpha)
+    )
     corrected = (
         ""
         if conclusion.p_holm is None
@@ -46,8 +51,8 @@ def _primary(conclusion: Conclusion, evidence: Evidence, plan: Plan) -> str:
     return (
         f"{capital(words)}: "
         f"{means(evidence.comparisons[conclusion.measure], plan.arms)}, "
-        f"{bracketed(conclusion.primary)}, {statement(conclusion.primary, plan.alpha)}"
-        f"{corrected} ({_arms(plan.arms)}; trials clustered by participant and scenario)."
+        f"{bracketed(conclusion.primary)}, {tested}{corrected} "
+        f"({_arms(plan.arms)}; trials clustered by participant and scenario)."
     )
 
 

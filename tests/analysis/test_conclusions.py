@@ -80,6 +80,17 @@ def test_a_test_that_is_not_defined_concludes_nothing_and_does_not_count_for_the
     assert time.p_holm == pytest.approx(0.04)
 
 
+def test_equal_values_are_not_tested_though_their_p_is_1_which_is_not_printed():
+    constant = replace(result(1.0, estimate=0.0), warnings=("constant_outcome",), statistic=None)
+    comparisons = {**concluded(p=(1.0, 0.02, 0.04))[1], "correct": compared("correct", constant)}
+    correct, time, _ = conclusions = conclude(PLAN, comparisons)
+    assert (correct.primary.p, correct.p_holm, correct.direction) == (1.0, None, "undefined")
+    assert time.p_holm == pytest.approx(0.04)
+    answer, *_ = said(conclusions, comparisons)
+    assert answer.verdict == "H1, correct guesses: not to be tested with these data."
+    assert answer.text.endswith("points. All values are equal, so the test is not defined.")
+
+
 @pytest.mark.parametrize(
     ("p_model", "effect", "shown", "agree"),
     [

@@ -155,6 +155,13 @@ def test_sentences_for_a_manuscript_are_whole_sentences(paper):
     ) in sentences
 
 
+def test_a_manuscript_has_no_p_of_equal_values(tmp_path):
+    rows = [row | {"confidence": 5} for row in six_participants()]
+    results = analyse_path(write_table(TRIALS, rows, tmp_path)[0])
+    confidence = apa_sentences(results.evidence, results.data.plan)[2]
+    assert "AUC = .500, not to be tested with these data (PoLMDP" in confidence
+
+
 def test_terminal_text_is_plain_and_narrow(paper):
     text = plain_text(brief_parts(paper))
     assert text.isascii()
