@@ -27,9 +27,16 @@ def replacing(path: Path) -> Iterator[Path]:
 @contextmanager
 def folder_for_writing(folder: Path) -> Iterator[Path]:
     """Make `folder` with its parents and turn the system's refusals into an AnalysisError."""
-    try:
+    with refusals_told(folder):
         folder.mkdir(parents=True, exist_ok=True)
         yield folder
+
+
+@contextmanager
+def refusals_told(folder: Path) -> Iterator[None]:
+    """Turn the system's refusals in the block into an AnalysisError that names `folder`."""
+    try:
+        yield
     except OSError as error:
         reason = error.strerror or str(error)
         raise AnalysisError(f"{folder}: expected a folder to write to, got: {reason}") from error

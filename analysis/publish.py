@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from .files import folder_for_writing
+from .files import folder_for_writing, refusals_told
 from .reporting.apa import apa_sentences
 from .reporting.as_json import as_json
 from .reporting.document import Picture
@@ -23,26 +23,31 @@ Pictures = dict[str, list[Picture]]
 def write_report(results: Results, folder: Path, tell: Callable[[str], None]) -> None:
     """Write report.html, .md and .json, apa.txt, and figures/*.svg, *.png, *.csv into `folder`.
 
-    All are made in a temporary folder beside it first, so that a failure leaves `folder` as it
-    was; other files in `folder` stay. `tell` hears what is being done.
+    All are made in a temporary folder first, inside `folder` or, while it is not there, beside it,
+    so that a failure leaves `folder` as it was; other files in `folder` stay. `tell` hears what is
+    being done. AnalysisError, naming `folder`, if it cannot be written to.
     """
     folder = folder.resolve()
-    if folder.exists():
-        with folder_for_writing(folder):
-            pass  # what is in the way is told before figures are drawn, not after
-    with (
-        folder_for_writing(folder.parent),
-        tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as made,
-    ):
-        temporary = Path(made)
-        pictures = _draw(results, temporary / "figures", tell)
-        tell("Writing the report")
-        for name, content in _texts(results, pictures, temporary / "figures").items():
-            (temporary / name).write_text(content, encoding="utf-8")
-        with folder_for_writing(folder), folder_for_writing(folder / "figures"):
-            for file in temporary.rglob("*"):
-                if file.is_file():
-                    file.replace(folder / file.relative_to(temporary))
+    # inside a folder that is there, because the one around it may be read-only
+    around = folder if folder.exists() else folder.parent
+    with refusals_told(folder):
+        around.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=around) as made:
+            _write_by_way_of(Path(made), results, folder, tell)
+
+
+def _write_by_way_of(
+    temporary: Path, results: Results, folder: Path, tell: Callable[[str], None]
+) -> None:
+    """Make all files in `temporary`, then move them to `folder`."""
+    pictures = _draw(results, temporary / "figures", tell)
+    tell("Writing the report")
+    for name, content in _texts(results, pictures, temporary / "figures").items():
+        (temporary / name).write_text(content, encoding="utf-8")
+    with folder_for_writing(folder), folder_for_writing(folder / "figures"):
+        for file in temporary.rglob("*"):
+            if file.is_file():
+                file.replace(folder / file.relative_to(temporary))
 
 
 def _texts(results: Results, pictures: Pictures, figures: Path) -> dict[str, str]:

@@ -90,6 +90,38 @@ def test_a_second_report_replaces_the_first_and_spares_other_files(export, tmp_p
     assert json.loads((folder / "report.json").read_text())["schema_version"] == 2
 
 
+def folders_while_writing(results, folder):
+    """What lies beside `folder` at each step of writing a report into it."""
+    seen = set()
+    write_report(results, folder, lambda _what: seen.update(folder.parent.iterdir()))
+    return seen
+
+
+@pytest.mark.usefixtures("one_figure")
+def test_a_folder_that_is_there_is_written_without_touching_the_one_around_it(export, tmp_path):
+    folder = tmp_path / "shared" / "report"
+    folder.mkdir(parents=True)
+    assert folders_while_writing(analyse_path(export), folder) == {folder}
+    assert {path.name for path in folder.iterdir()} == {
+        *("report.html", "report.json", "report.md", "apa.txt", "figures")
+    }
+
+
+@pytest.mark.usefixtures("one_figure")
+def test_a_folder_that_is_not_there_yet_appears_when_the_report_is_whole(export, tmp_path):
+    folder = tmp_path / "shared" / "report"
+    assert folder not in folders_while_writing(analyse_path(export), folder)
+    assert list(folder.parent.iterdir()) == [folder]
+
+
+def test_a_folder_that_cannot_be_made_is_named_as_it_was_asked_for(export, tmp_path):
+    (tmp_path / "taken").write_text("mine")
+    folder = tmp_path / "taken" / "report"
+    with pytest.raises(AnalysisError) as caught:
+        write_report(analyse_path(export), folder, silent)
+    assert str(caught.value).startswith(f"{folder}: expected a folder to write to")
+
+
 def test_a_report_that_fails_half_way_leaves_nothing(export, tmp_path):
     def interrupted(_what):
         raise KeyboardInterrupt
@@ -97,6 +129,10 @@ def test_a_report_that_fails_half_way_leaves_nothing(export, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         write_report(analyse_path(export), tmp_path / "reports" / "one", interrupted)
     assert not list((tmp_path / "reports").iterdir())
+    (tmp_path / "reports" / "one").mkdir()
+    with pytest.raises(KeyboardInterrupt):
+        write_report(analyse_path(export), tmp_path / "reports" / "one", interrupted)
+    assert not list((tmp_path / "reports" / "one").iterdir())
 
 
 @pytest.mark.usefixtures("one_figure")
