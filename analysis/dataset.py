@@ -10,6 +10,7 @@ from .arms import Arms
 from .contract import TRIALS
 from .exclusions import Excluded
 from .flow import Flow
+from .mapping import TableMapping
 from .plan import Plan
 from .statistics.outcome import Clusters, Outcome
 from .study import Source
@@ -27,8 +28,8 @@ class Dataset:
 
     `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
-    pairs the file's column names with those of the contract; `confidence_scale` has the lowest and
-    the highest rating.
+    pairs the file's column names with those of the contract, by `mapping` or because they are
+    understood without one.
     """
 
     plan: Plan
@@ -44,12 +45,17 @@ class Dataset:
     excluded: tuple[Excluded, ...]
     flow: Flow
     renamed: tuple[tuple[str, str], ...]
-    confidence_scale: tuple[float, float]
+    mapping: TableMapping
 
     @property
     def arms(self) -> Arms:
         """The two conditions that are compared."""
         return self.plan.arms
+
+    @property
+    def confidence_scale(self) -> tuple[float, float]:
+        """The lowest and the highest rating."""
+        return self.mapping.confidence
 
     @property
     def before_exclusions(self) -> Dataset:

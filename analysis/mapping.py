@@ -22,13 +22,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import polars as pl
 
 from .columns import Column
 from .contract import TRIALS
 from .errors import TableError, TomlError
-from .toml_file import Section, read_toml
+from .toml_file import Section, content_sha256, read_toml
 
 ALIASES = {
     "video": "scenario",
@@ -58,6 +59,22 @@ class TableMapping:
     units: Mapping[str, str] = field(default_factory=dict)
     confidence: tuple[float, float] = (_CONFIDENCE.low or 0, _CONFIDENCE.high or 0)
     file: str = "no mapping"
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """What the mapping says, under the keys of its file."""
+        low, high = self.confidence
+        return {
+            "columns": dict(self.columns),
+            "conditions": dict(self.conditions),
+            "units": dict(self.units),
+            "confidence": {"low": low, "high": high},
+        }
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the content, in hexadecimal."""
+        return content_sha256(self.content)
 
     def sources(self, names: Sequence[str], file: str) -> dict[str, str]:
         """Return which of the file's columns `names` each column of the contract is read from.

@@ -6,8 +6,6 @@ default. Two plans that say the same have the same hash, however their files are
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -16,7 +14,7 @@ from typing import Any
 
 from .arms import Arm, Arms
 from .exclusions import RULES, Exclusion
-from .toml_file import Section, read_toml
+from .toml_file import Section, content_sha256, read_toml
 
 DEFAULT_FILE = Path(__file__).with_suffix(".toml")
 
@@ -96,8 +94,7 @@ class Plan:
     @property
     def sha256(self) -> str:
         """Hash of the content, in hexadecimal."""
-        canonical = json.dumps(self.content, sort_keys=True, separators=(",", ":"))
-        return hashlib.sha256(canonical.encode()).hexdigest()
+        return content_sha256(self.content)
 
 
 @cache

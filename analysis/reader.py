@@ -58,7 +58,7 @@ def read_dataset(
         excluded=excluded,
         flow=participant_flow(plan, trials, participants, others_by_condition, excluded),
         renamed=study.renamed,
-        confidence_scale=mapping.confidence,
+        mapping=mapping,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
@@ -21,6 +23,12 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise AnalysisError(f"{path}: expected a TOML file, got: {reason}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise TomlError(path.name, "", "TOML in UTF-8", str(error)) from error
+
+
+def content_sha256(content: Mapping[str, Any]) -> str:
+    """Return the hash of what a file says, in hexadecimal, however the file is written."""
+    canonical = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(canonical.encode()).hexdigest()
 
 
 class Section:

@@ -21,12 +21,14 @@ SCHEMA_VERSION = 2
 def as_json(results: Results) -> dict[str, Any]:
     """Return the content of report.json: text, numbers, true, false and null, no NaN."""
     data, evidence, plan = results.data, results.evidence, results.data.plan
+    mapping = data.mapping
     content = {
         "schema_version": SCHEMA_VERSION,
         "inputs": data.sources,
         "packages": results.packages,
         "seed": plan.seed,
         "plan": {"file": plan.file, "sha256": plan.sha256, **plan.content},
+        "mapping": {"file": mapping.file, "sha256": mapping.sha256, **mapping.content},
         "selection": {
             "with_simulated": data.with_simulated,
             "simulated_trials": data.simulated,

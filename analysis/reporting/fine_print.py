@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from ..dataset import Dataset
 from ..evidence import Evidence
+from ..mapping import TableMapping
 from ..plan import Plan
 from ..statistics.result import TestResult
 from ..statistics.survival import Incidence
@@ -36,6 +37,7 @@ def fine_print_parts(data: Dataset, evidence: Evidence, packages: Mapping[str, s
     """Return what is needed to check the report, or to make it again."""
     labels = {"treatment": data.arms.treatment.label, "reference": data.arms.reference.label}
     files = (f"{each.file}: {each.rows:,} rows, SHA-256 {each.sha256}" for each in data.sources)
+    software = ", ".join(f"{name} {version}" for name, version in packages.items())
     return [
         Heading("Fine print"),
         Items(tuple(each.format(**labels) for each in _DEFINITIONS)),
@@ -43,8 +45,29 @@ def fine_print_parts(data: Dataset, evidence: Evidence, packages: Mapping[str, s
         Items(_sources(evidence)),
         *_plan(data.plan),
         Heading("Made from", 3),
-        Items((*files, ", ".join(f"{name} {version}" for name, version in packages.items()))),
+        Items((*files, *_reading(data), software)),
     ]
+
+
+def _reading(data: Dataset) -> Iterator[str]:
+    """Say what the file's names, conditions, units and ratings were taken for."""
+    mapping = data.mapping
+    if mapping == TableMapping():
+        yield "No mapping"
+    else:
+        yield f"{mapping.file}, SHA-256 of what it says: {mapping.sha256}"
+    if data.renamed:
+        yield f"Columns: {_pairs(data.renamed, 'as')}"
+    if mapping.conditions:
+        yield f"Conditions: {_pairs(mapping.conditions.items(), 'as')}"
+    if mapping.units:
+        yield f"Units: {_pairs(mapping.units.items(), 'in')}, all turned into s"
+    low, high = data.confidence_scale
+    yield f"Confidence: from {low:g} to {high:g}"
+
+
+def _pairs(pairs: Iterable[tuple[str, str]], between: str) -> str:
+    return ", ".join(f"{one} {between} {other}" for one, other in pairs)
 
 
 def _sources(evidence: Evidence) -> tuple[str, ...]:

@@ -7,10 +7,14 @@ from analysis import (
     TableError,
     TableMapping,
     TomlError,
+    analyse_path,
     outcome,
     read_dataset,
     read_mapping,
 )
+from analysis.reporting.as_json import as_json
+from analysis.reporting.markdown import markdown
+from analysis.reporting.report import report_parts
 from tests.analysis.rows import as_csv, edited, six_participants
 
 MAPPING = """
@@ -93,6 +97,44 @@ def test_mapped_and_understood_names_are_told(table, mapping_of):
         "rt": "stop_time_s",
         "trial": "trial_index",
     }
+
+
+def test_the_report_tells_the_mapping_with_its_hash_and_all_that_it_changed(table, mapping_of):
+    mapping = mapping_of(MAPPING)
+    results = analyse_path(table, mapping=mapping)
+    made_from = markdown(report_parts(results)).partition("### Made from")[2]
+    for said in (
+        f"names.toml, SHA-256 of what it says: {mapping.sha256}",
+        "subject as participant",
+        "group as condition",
+        "rt as stop_time_s",
+        "Conditions: 1 as polmdp, 2 as optimal",
+        "Units: stop_time_s in ms, all turned into s",
+        "Confidence: from 0 to 100",
+    ):
+        assert said in made_from
+    told = as_json(results)["mapping"]
+    assert (told["file"], told["sha256"]) == ("names.toml", mapping.sha256)
+    assert told["columns"] == dict(mapping.columns)
+    assert told["conditions"] == {"1": "polmdp", "2": "optimal"}
+    assert told["units"] == {"stop_time_s": "ms"}
+    assert told["confidence"] == {"low": 0, "high": 100}
+
+
+def test_a_report_without_a_mapping_says_that_there_was_none(export):
+    results = analyse_path(export)
+    made_from = markdown(report_parts(results)).partition("### Made from")[2]
+    assert "- No mapping\n- Confidence: from 1 to 7\n" in made_from
+    assert as_json(results)["mapping"]["file"] == "no mapping"
+
+
+def test_two_mappings_have_one_hash_if_and_only_if_they_say_the_same(mapping_of):
+    first = mapping_of(MAPPING)
+    _, columns, conditions, units, confidence = MAPPING.split("\n[")
+    reordered = [units, confidence, conditions, columns]
+    assert mapping_of("".join(f"\n[{each}" for each in reordered)).sha256 == first.sha256
+    assert mapping_of(MAPPING.replace('"ms"', '"s"')).sha256 != first.sha256
+    assert mapping_of(MAPPING.replace("high = 100", "high = 99")).sha256 != first.sha256
 
 
 @pytest.mark.parametrize(
