@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
+from ..wording import percent
 from .drawn import Drawn
 from .style import (
     COLOURS,
@@ -28,19 +30,22 @@ if TYPE_CHECKING:
     from ..statistics.survival import ArmIncidence, Curve, Incidence
 
 _TIMES = 5
+_FEWEST_AT_RISK = 10
+"""With fewer trials in an arm its curves hang on single trials."""
 
 
 def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
     """Show the cumulative incidence of correct stops per arm with 95 % bands, of wrong ones dotted.
 
-    Below the axis stand the trials at risk: not ended before. An arm of one participant has no
-    band.
+    Below the axis stand the trials at risk: not ended before. The axis ends where an arm has fewer
+    than 10 of them, unless it has from the start. An arm of one participant has no band.
     """
+    incidence = _while_enough_at_risk(incidence)
     time_s, arms = incidence.time_s, (incidence.treatment, incidence.reference)
     marked = np.unique(np.searchsorted(time_s, np.linspace(0, time_s[-1], _TIMES)))
     note = (
-        "Share of trials stopped by then, of all; band: 95 % interval at each time by itself, "
-        "participants clustered. Trials watched to the end count as never stopped."
+        "Estimated share of trials stopped by then; a trial watched to its end leaves the count "
+        "there. Band: 95 % interval at each time by itself, participants clustered."
     )
     with panel(5.0, note) as (figure, axes):
         for arm, (curves, label) in enumerate(zip(arms, labels, strict=True)):
@@ -66,9 +71,36 @@ def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
         axes.locator_params("x", nbins=6, steps=[1, 2, 5, 10])
         axes.set(xlabel="Motion seen, s", ylabel="Trials stopped, %")
         at_risk = (curves.at_risk[marked] for curves in arms)
-        counts_below(axes, "Trials not stopped before", time_s[marked], *at_risk)
+        counts_below(axes, "Trials not ended before", time_s[marked], *at_risk)
         legend_above(figure, axes)
     return Drawn(figure, _data(incidence, labels), _alt(arms, labels, float(time_s[-1])))
+
+
+def _while_enough_at_risk(incidence: Incidence) -> Incidence:
+    """Leave out the times at which an arm has few trials at risk, unless it has from the start."""
+    arms = incidence.treatment, incidence.reference
+    times = int((np.minimum(*(arm.at_risk for arm in arms)) >= _FEWEST_AT_RISK).sum())
+    # time 0 alone is no curve
+    if times < 2:
+        return incidence
+    treatment, reference = (
+        replace(
+            arm,
+            correct=_first(arm.correct, times),
+            wrong=_first(arm.wrong, times),
+            at_risk=arm.at_risk[:times],
+        )
+        for arm in arms
+    )
+    return replace(
+        incidence, time_s=incidence.time_s[:times], treatment=treatment, reference=reference
+    )
+
+
+def _first(curve: Curve, times: int) -> Curve:
+    """Return the beginning of a curve, so many times long."""
+    there = {name: values for name, values in vars(curve).items() if values is not None}
+    return replace(curve, **{name: values[:times] for name, values in there.items()})
 
 
 def _band(axes: Axes, time_s: Numbers, curve: Curve, colour: str) -> None:
@@ -100,8 +132,17 @@ def _data(incidence: Incidence, labels: Labels) -> pl.DataFrame:
 
 def _alt(arms: tuple[ArmIncidence, ArmIncidence], labels: Labels, end_s: float) -> str:
     seen = "; ".join(
-        f"{label} {100 * curves.correct.share[-1]:.1f} % correct and "
-        f"{100 * curves.wrong.share[-1]:.1f} % wrong stops, n = {curves.n:,} trials"
+        f"{label} {percent(curves.correct.share[-1])} correct and "
+        f"{percent(curves.wrong.share[-1])} wrong stops"
         for label, curves in zip(labels, arms, strict=True)
     )
-    return f"Curves of the share of trials stopped by each time; by {end_s:.1f} s: {seen}."
+    counted = "; ".join(
+        f"{label} {percent(curves.n_correct / curves.n)} correct and "
+        f"{percent(curves.n_wrong / curves.n)} wrong stops, n = {curves.n:,} trials"
+        for label, curves in zip(labels, arms, strict=True)
+    )
+    return (
+        "Curves of the estimated share of trials stopped by each time, where a trial watched to "
+        f"its end leaves the count there; by {end_s:.1f} s: {seen}. Counted, of all trials, "
+        f"whenever they ended: {counted}."
+    )

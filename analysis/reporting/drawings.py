@@ -13,6 +13,8 @@ from ..evidence import Evidence
 from ..methods import Comparison
 from ..statistics.mixed_model import CrossedLogistic
 from ..statistics.result import TestResult
+from ..statistics.survival import Incidence
+from ..wording import percent
 from .answers import WORDS, capital
 from .method_tables import PRIMARY, method_names
 
@@ -80,7 +82,7 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
     yield Drawing(
         section,
         "incidence",
-        "Trials that had come to a correct or a wrong stop by each time.",
+        _incidence_caption(evidence.incidence, labels),
         lambda: figures.figure_incidence(evidence.incidence, labels),
     )
     yield Drawing(
@@ -106,6 +108,18 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
         "flow",
         "How far participants came (after CONSORT).",
         lambda: figures.figure_flow(data.flow, labels),
+    )
+
+
+def _incidence_caption(incidence: Incidence, labels: figures.Labels) -> str:
+    """Set the shares counted of all trials beside the estimates of the curves."""
+    counted = ", ".join(
+        f"{percent(arm.n_correct / arm.n)} with {label}"
+        for arm, label in zip((incidence.treatment, incidence.reference), labels, strict=True)
+    )
+    return (
+        "Estimated share of trials that had come to a correct or a wrong stop by each time. "
+        f"Counted, of all trials: {counted} ended in a correct stop."
     )
 
 

@@ -6,7 +6,7 @@ import pytest
 from analysis.figures import figure_accuracy_by_time, figure_calibration, figure_incidence
 from analysis.statistics.calibration import Accuracy, AccuracyBy
 from analysis.statistics.survival import cumulative_incidence, stops
-from tests.analysis.figures.studies import LABELS
+from tests.analysis.figures.studies import LABELS, texts
 
 
 def incidence(participant=(0, 1, 2, 3, 4, 5, 6, 7)):
@@ -47,7 +47,40 @@ def test_trials_at_risk_begin_with_all_of_an_arm():
     drawn = figure_incidence(incidence(), LABELS)
     start = drawn.data.filter(time_s=0.0, stop="correct")
     assert start.select("arm", "at_risk").rows() == [("PoLMDP", 4), ("optimal", 4)]
-    assert "by 8.0 s: PoLMDP 50.0 % correct and 25.0 % wrong stops, n = 4 trials" in drawn.alt
+    assert "by 8.0 s: PoLMDP 50.0 % correct and 25.0 % wrong stops; optimal" in drawn.alt
+
+
+def correct_stops(stop_time_s, length_s):
+    """The same in both arms, a participant a trial."""
+    n = len(stop_time_s)
+    twice = np.tile(stop_time_s, 2), np.tile(length_s, 2)
+    ends = stops(*twice, np.ones(2 * n), np.arange(2 * n) < n, np.arange(2 * n))
+    return cumulative_incidence(ends)
+
+
+def test_estimates_are_told_from_the_shares_counted_of_all_trials():
+    """A trial watched to its end, 2 s, leaves three that all stop: estimated 100 %, counted 75."""
+    drawn = figure_incidence(correct_stops([2.0, 3.0, 4.0, 5.0], [2.0, 9.0, 9.0, 9.0]), LABELS)
+    note = " ".join(" ".join(text.get_text() for text in texts(drawn.figure)).split())
+    assert "Estimated share of trials stopped by then; a trial watched to its end leaves" in note
+    assert drawn.alt == (
+        "Curves of the estimated share of trials stopped by each time, where a trial watched to "
+        "its end leaves the count there; by 5.0 s: PoLMDP 100.0 % correct and 0.0 % wrong stops; "
+        "optimal 100.0 % correct and 0.0 % wrong stops. Counted, of all trials, whenever they "
+        "ended: PoLMDP 75.0 % correct and 0.0 % wrong stops, n = 4 trials; "
+        "optimal 75.0 % correct and 0.0 % wrong stops, n = 4 trials."
+    )
+
+
+def test_the_axis_ends_where_fewer_than_ten_trials_of_an_arm_are_at_risk():
+    """Of 12 that stop at 1, 2, .. 12 s, ten have not stopped before 3 s, and nine before 4 s."""
+    drawn = figure_incidence(correct_stops(np.arange(1.0, 13), np.full(12, 20.0)), LABELS)
+    (axes,) = drawn.figure.axes
+    assert axes.get_xlim() == (0, 3)
+    assert drawn.data["time_s"].unique().sort().to_list() == [0, 1, 2, 3]
+    assert drawn.data["at_risk"].min() == 10
+    assert "by 3.0 s: PoLMDP 25.0 % correct" in drawn.alt
+    assert "Counted, of all trials, whenever they ended: PoLMDP 100.0 % correct" in drawn.alt
 
 
 def accuracy(level, n, n_correct):

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import polars as pl
+
 from analysis.reporting.drawings import drawings
 
 
@@ -10,3 +12,15 @@ def test_forests_tell_p_from_the_plans_alpha(paper):
     data = replace(paper.data, plan=replace(paper.data.plan, alpha=0.09095))
     forests = {each.name: each for each in drawings(data, paper.evidence)}
     assert "(primary) 0.546 [0.492, 0.600], p = .0909;" in forests["forest_confidence"].draw().alt
+
+
+def test_the_caption_of_incidence_has_the_shares_counted_of_all_trials(paper):
+    stopped = pl.col("correct") & (pl.col("stop_time_s") < pl.col("length_s"))
+    by_arm = paper.data.trials.group_by("treated").agg(100 * stopped.mean())
+    counted = dict(by_arm.iter_rows())
+    captions = {each.name: each.caption for each in drawings(paper.data, paper.evidence)}
+    assert captions["incidence"] == (
+        "Estimated share of trials that had come to a correct or a wrong stop by each time. "
+        f"Counted, of all trials: {counted[True]:.1f} % with PoLMDP, {counted[False]:.1f} % with "
+        "optimal ended in a correct stop."
+    )
