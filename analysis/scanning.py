@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +19,7 @@ FORMATS = (".csv", ".parquet", ".jsonl")
 
 _FILLED = " filled"
 _LARGEST_EXACT = 2.0**53
+_OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs"}
 _WORDS = {"true": True, "1": True, "false": False, "0": False}
 
 
@@ -43,7 +45,7 @@ def scan(path: Path) -> tuple[pl.LazyFrame, list[str]]:
             raise TableError(
                 path.name, f"a file ending in {', '.join(FORMATS)}", path.suffix or "no ending"
             )
-    except (OSError, ValueError, pl.exceptions.PolarsError) as error:
+    except (OSError, ValueError, csv.Error, pl.exceptions.PolarsError) as error:
         raise _unreadable(path, error) from error
     numbered = raw.with_row_index(ROW, offset=first_row)
     return numbered.filter(~pl.all_horizontal(pl.col(names).is_null())), names
@@ -121,6 +123,10 @@ def _csv_header(path: Path) -> list[str]:
     if not names or repeated:
         got = f"{', '.join(repeated)} more than once" if repeated else "an empty file"
         raise TableError(path.name, "a header of different column names", got, row=1)
+    for separator, called in _OTHER_SEPARATORS.items():
+        if len(names) == 1 and separator in names[0]:
+            expected = "column names separated by commas"
+            raise TableError(path.name, expected, f"them separated by {called}", row=1)
     return names
 
 
@@ -135,16 +141,28 @@ def _jsonl_keys(path: Path) -> list[str]:
 def _unreadable(path: Path, error: Exception) -> TableError:
     """Say where a file cannot be read; polars does not tell the row, so look for it."""
     try:
+        if path.suffix != ".parquet" and (not_utf8 := _first_row_not_in_utf8(path)):
+            return not_utf8
         if path.suffix == ".csv":
             return _first_ragged_row(path)
         if path.suffix == ".jsonl":
             return _first_broken_line(path)
-    except (OSError, ValueError, LookupError):
+    except (OSError, ValueError, LookupError, csv.Error):
         pass
     reason = str(error).splitlines()[0] if str(error) else type(error).__name__
     if isinstance(error, OSError):
         reason = error.strerror or reason
     return TableError(path.name, f"a readable {path.suffix} file in UTF-8", reason)
+
+
+def _first_row_not_in_utf8(path: Path) -> TableError | None:
+    with path.open(encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
+        rows = csv.reader(file) if path.suffix == ".csv" else file
+        for number, row in enumerate(rows, start=1):
+            if escaped := re.search("[\udc80-\udcff]", "".join(row)):
+                got = f"byte 0x{ord(escaped[0]) - 0xDC00:02x}; save the table as UTF-8"
+                return TableError(path.name, "characters in UTF-8", got, row=number)
+    return None
 
 
 def _first_ragged_row(path: Path) -> TableError:

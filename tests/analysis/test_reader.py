@@ -140,6 +140,36 @@ def test_an_export_without_any_row_is_one_clear_error(tmp_path):
             read_dataset(path)
 
 
+@pytest.mark.parametrize(("separator", "called"), [(";", "semicolons"), ("\t", "tabs")])
+def test_a_table_with_another_separator_is_told_that_commas_are_expected(
+    tmp_path, separator, called
+):
+    path = as_csv(tmp_path / "t.csv", foreign_rows())
+    path.write_text(path.read_text().replace(",", separator))
+    error = complaint(path)
+    assert error.row == 1
+    assert f"names separated by commas, got them separated by {called}" in str(error)
+
+
+@pytest.mark.parametrize("row", [1, 3, 20_000])
+@pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
+def test_a_character_that_is_not_utf_8_is_named_by_its_row_and_byte(tmp_path, suffix, row):
+    path = tmp_path / f"t{suffix}"
+    frame = pl.DataFrame([foreign_rows()[0] | {"video": "cafe"}] * 20_000)
+    frame.write_csv(path) if suffix == ".csv" else frame.write_ndjson(path)
+    lines = path.read_bytes().splitlines(keepends=True)
+    lines[row - 1] = lines[row - 1].replace(b"e", b"\xe9", 1)
+    path.write_bytes(b"".join(lines))
+    error = complaint(path)
+    assert error.row == row
+    assert str(error).endswith("characters in UTF-8, got byte 0xe9; save the table as UTF-8")
+
+
+def test_a_cell_too_long_for_any_table_is_one_clear_error(tmp_path):
+    (tmp_path / "t.csv").write_text('"' + "a" * 200_000)
+    assert complaint(tmp_path / "t.csv").file == "t.csv"
+
+
 def test_empty_rows_are_passed_over_but_counted(tmp_path):
     path = as_csv(tmp_path / "t.csv", foreign_rows())
     lines = path.read_text().splitlines()
