@@ -97,9 +97,16 @@ def _scenarios_not_shared(data: Dataset) -> list[Notice]:
     )
     if not alone:
         return []
+    scenarios = data.trials["scenario"].n_unique()
+    if len(alone) == scenarios:
+        text = (
+            f"No scenario was seen in both conditions: how the {scenarios} scenarios differ cannot "
+            "be told from what the conditions do."
+        )
+        return [Notice(codes.NO_SCENARIO_SHARED, "design", text)]
     text = (
         f"Scenarios seen in one condition only, where they cannot be told from it: {len(alone)} "
-        f"of {data.trials['scenario'].n_unique()} ({_listed(alone)})."
+        f"of {scenarios} ({_listed(alone)})."
     )
     return [Notice(codes.SCENARIOS_NOT_SHARED, "design", text)]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..results import Results
+from ..statistics.codes import NO_SCENARIO_SHARED
 from .answers import answers, capital
 from .apa import apa_sentences
 from .design_tables import chance_parts, discrimination_parts, likeness_parts, stops_parts
@@ -70,10 +71,11 @@ def brief_parts(results: Results) -> list[Part]:
 def _answer(results: Results) -> list[Part]:
     arms, evidence = results.data.arms, results.evidence
     tested = any(each.direction != "undefined" for each in evidence.conclusions)
+    shared = all(notice.code != NO_SCENARIO_SHARED for notice in results.notices)
     parts = [
         Heading(f"{capital(arms.treatment.label)} against {arms.reference.label}: {_TITLE}", 1),
         *answers(evidence.conclusions, evidence.comparisons, arms, results.data.plan.alpha),
-        Paragraph(f"{_HOW} {_ELSEWHERE}" if tested else _ELSEWHERE),
+        Paragraph(f"{_HOW} {_ELSEWHERE}" if tested and shared else _ELSEWHERE),
     ]
     if results.notices:
         noted = tuple(notice.text for notice in results.notices)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from .codes import (
     FEW_CLUSTERS,
     NO_OVERLAP,
+    NO_SCENARIO_SHARED,
     NO_VARIATION,
     ONE_PARTICIPANT,
     SCENARIOS_NOT_SHARED,
@@ -203,4 +204,6 @@ def _sharing(data: Outcome) -> tuple[str, ...]:
     scenario, treated = data.scenario[known], data.treated[known]
     seen, in_treatment = np.bincount(scenario), np.bincount(scenario, treated)
     shared = (in_treatment > 0) & (in_treatment < seen)
-    return () if shared.all() else (SCENARIOS_NOT_SHARED,)
+    if shared.all():
+        return ()
+    return (SCENARIOS_NOT_SHARED if shared.any() else NO_SCENARIO_SHARED,)

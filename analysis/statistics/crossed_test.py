@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from .codes import (
     CONSTANT_OUTCOME,
     FEW_CLUSTERS,
+    NO_SCENARIO_SHARED,
     NOT_CONVERGED,
     ONE_PARTICIPANT,
     ONE_SCENARIO,
-    SCENARIOS_NOT_SHARED,
     SEPARATION,
     SINGLE_TRIALS,
     TOO_MANY_CLUSTERS,
@@ -120,7 +120,7 @@ def _factors(data: Outcome, interaction: bool) -> tuple[Factors, tuple[str, ...]
     if cluster_count(data.participant) == n:
         warnings.append(SINGLE_TRIALS)
     if not shared:
-        warnings.append(SCENARIOS_NOT_SHARED)
+        warnings.append(NO_SCENARIO_SHARED)
     in_arms = interaction and shared and scenarios > 1 and cluster_count(cells) < n
     factors = (
         data.participant if cluster_count(data.participant) < n else None,

@@ -57,10 +57,21 @@ def test_scenarios_of_one_arm_only_are_named(told):
 
 def test_many_scenarios_of_one_arm_are_counted_and_five_of_them_named(told):
     rows = many(10, 10)
+    for row in rows[:-1]:
+        row["scenario"] = f"{row['scenario']}{row['condition'][0]}"
+    rows[-1]["scenario"] = "S10p"
+    text = told(rows)["scenarios_not_shared"]
+    assert text.endswith("19 of 20 (S01o, S01p, S02o, S02p, S03o, and 14 more).")
+
+
+def test_scenarios_of_which_none_is_shared_are_said_to_be_all(told):
+    rows = many(10, 10)
     for row in rows:
         row["scenario"] = f"{row['scenario']}{row['condition'][0]}"
-    text = told(rows)["scenarios_not_shared"]
-    assert text.endswith("20 of 20 (S01o, S01p, S02o, S02p, S03o, and 15 more).")
+    assert told(rows) == {
+        "no_scenario_shared": "No scenario was seen in both conditions: how the 20 scenarios "
+        "differ cannot be told from what the conditions do."
+    }
 
 
 def test_participants_with_fewer_trials_than_planned_are_counted(told):

@@ -64,6 +64,17 @@ def test_what_is_tested_speaks_of_other_people_and_scenarios(paper):
     assert "they speak of other people and other scenarios too" in markdown(report_parts(paper))
 
 
+def test_what_no_scenario_was_shared_in_does_not_speak_of_other_scenarios(tmp_path):
+    rows = six_participants()
+    for row in rows:
+        row["scenario"] += row["condition"]
+    text = markdown(report_parts(analyse_path(write_table(TRIALS, rows, tmp_path)[0])))
+    assert "t(5) = " in text.partition("## Please note")[0]
+    assert "Every scenario was seen in one arm only" in text
+    assert "ome scenarios were seen" not in text
+    assert "other scenarios too" not in text
+
+
 def test_what_the_papers_tests_show_and_the_two_way_tests_do_not_is_told_apart(paper):
     """Golden paper_confidence_counts: R 4.2.2 wilcox.test, p = .001 on trials."""
     text = markdown(report_parts(paper))

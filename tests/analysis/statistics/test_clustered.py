@@ -290,6 +290,8 @@ def test_scenarios_of_one_arm_only_are_warned_of(test):
     trials = [4, 5, 6, 1, 2, 9], [1, 1, 1, 0, 0, 0], [*"aabccd"]
     assert "scenarios_not_shared" in test(outcome(*trials, [*"stuusv"])).warnings
     assert "scenarios_not_shared" not in test(outcome(*trials, [*"stuust"])).warnings
+    warnings = test(outcome(*trials, [*"stuvwx"])).warnings
+    assert {"scenarios_not_shared", "no_scenario_shared"} & set(warnings) == {"no_scenario_shared"}
 
 
 def test_the_design_effect_of_trials_that_repeat_is_their_number():

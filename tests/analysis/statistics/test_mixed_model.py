@@ -301,7 +301,7 @@ def test_a_factor_that_trials_cannot_tell_is_left_out():
     assert single.sd_participant is None
     assert "single_trials" in single.warnings
     assert apart.sd_scenario_in_arm is None
-    assert "scenarios_not_shared" in apart.warnings
+    assert "no_scenario_shared" in apart.warnings
 
 
 def test_without_any_factor_the_risk_difference_is_that_of_the_shares():
