@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from .. import figures
@@ -16,7 +16,7 @@ from ..statistics.result import TestResult
 from ..statistics.survival import Incidence
 from ..wording import percent
 from .answers import WORDS, capital
-from .method_tables import PRIMARY, method_names
+from .method_tables import PRIMARY, in_shares, method_names
 
 TIME, CONFIDENCE = "prediction_time", "confidence"
 
@@ -83,7 +83,9 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
         section,
         "incidence",
         _incidence_caption(evidence.incidence, labels),
-        lambda: figures.figure_incidence(evidence.incidence, labels),
+        lambda: figures.figure_incidence(
+            evidence.incidence, labels, "Motion seen" if data.exported else "Time"
+        ),
     )
     yield Drawing(
         section,
@@ -141,11 +143,4 @@ def _on_scale(result: TestResult, primary: TestResult) -> TestResult:
     """Put the logistic model beside differences of shares by the difference that it implies."""
     if not isinstance(result, CrossedLogistic) or primary.unit != "share":
         return result
-    return replace(
-        result,
-        estimate=result.risk_difference,
-        low=result.risk_difference_low,
-        high=result.risk_difference_high,
-        unit=primary.unit,
-        null=primary.null,
-    )
+    return in_shares(result)

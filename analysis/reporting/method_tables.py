@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from ..methods import INDEPENDENT, Comparison, methods_of
+from ..statistics.mixed_model import CrossedLogistic
 from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import format_p
 from .answers import WORDS, capital
 from .document import Grid, Heading, Items, Part
-from .effects import beyond, estimate_cell, interval, statistic
+from .effects import beyond, bracketed, estimate_cell, interval, statistic
 
 PRIMARY = " (primary)"
 """What the primary test's name ends with."""
@@ -45,6 +47,18 @@ def method_names(compared: Comparison) -> dict[str, str]:
     }
 
 
+def in_shares(model: CrossedLogistic) -> CrossedLogistic:
+    """Put the difference of shares that the model implies in the place of its odds ratio."""
+    return replace(
+        model,
+        estimate=model.risk_difference,
+        low=model.risk_difference_low,
+        high=model.risk_difference_high,
+        unit="share",
+        null=0.0,
+    )
+
+
 def p_cell(p: float | None, alpha: float) -> str:
     """Write a p value where the column already says p."""
     return format_p(p, alpha=alpha).removeprefix("p ").removeprefix("= ")
@@ -68,5 +82,8 @@ def _notes(compared: Comparison, names: dict[str, str]) -> Iterable[str]:
             yield f"{names[key]}: {WARNINGS[code]}."
         if outside := beyond(result):
             yield f"{names[key]}: {outside}."
+        if isinstance(result, CrossedLogistic) and result.risk_difference is not None:
+            told = bracketed(in_shares(result))
+            yield f"{names[key]}: the same in shares, as forests show it, {told}."
     for key, reason in compared.left_out.items():
         yield f"{names[key]}: left out, {reason}."
