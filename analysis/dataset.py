@@ -29,7 +29,8 @@ class Dataset:
     `simulated` and `preview` count trials so marked: left out, or analysed if `with_simulated`.
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
     pairs the file's column names with those of the contract, by `mapping` or because they are
-    understood without one.
+    understood without one. `exported` is whether Goalguess made the file of trials, whose times
+    then count motion only.
     """
 
     plan: Plan
@@ -45,6 +46,7 @@ class Dataset:
     excluded: tuple[Excluded, ...]
     flow: Flow
     renamed: tuple[tuple[str, str], ...]
+    exported: bool
     mapping: TableMapping
 
     @property

@@ -58,6 +58,7 @@ def read_dataset(
         excluded=excluded,
         flow=participant_flow(plan, trials, participants, others_by_condition, excluded),
         renamed=study.renamed,
+        exported=study.exported,
         mapping=mapping,
     )
 

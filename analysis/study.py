@@ -66,13 +66,15 @@ class Study:
     """The checked tables of a study, whole; `participants` is None without such a table.
 
     Rows are in the order of participants and their trials, because the last digits of sums depend
-    on the order. `renamed` pairs the file's column names with those of the contract.
+    on the order. `renamed` pairs the file's column names with those of the contract; `exported` is
+    whether Goalguess made the file of trials, whose times then count motion only.
     """
 
     trials: pl.DataFrame
     participants: pl.DataFrame | None
     sources: tuple[Source, ...]
     renamed: tuple[tuple[str, str], ...]
+    exported: bool
 
 
 def read_study(path: Path, mapping: TableMapping) -> Study:
@@ -82,15 +84,15 @@ def read_study(path: Path, mapping: TableMapping) -> Study:
     """
     trials_path, participants_path = _find(path)
     trials, renamed = _read_trials(trials_path, mapping)
-    source = _source(trials_path, trials)
+    source, exported = _source(trials_path, trials), _is_export(trials.columns)
     if participants_path is None:
-        return Study(_in_order(trials, TRIALS), None, (source,), renamed)
+        return Study(_in_order(trials, TRIALS), None, (source,), renamed, exported)
     people = read_rows(PARTICIPANTS, participants_path)
     raise_first(participants_path.name, participant_problems(people))
     raise_first(trials_path.name, membership_problems(trials, people, participants_path.name))
     sources = source, _source(participants_path, people)
     in_order = _in_order(trials, TRIALS), _in_order(people, PARTICIPANTS)
-    return Study(*in_order, sources, renamed)
+    return Study(*in_order, sources, renamed, exported)
 
 
 def _find(path: Path) -> tuple[Path, Path | None]:

@@ -34,11 +34,12 @@ _FEWEST_AT_RISK = 10
 """With fewer trials in an arm its curves hang on single trials."""
 
 
-def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
+def figure_incidence(incidence: Incidence, labels: Labels, time: str = "Motion seen") -> Drawn:
     """Show the cumulative incidence of correct stops per arm with 95 % bands, of wrong ones dotted.
 
     Below the axis stand the trials at risk: not ended before. The axis ends where an arm has fewer
-    than 10 of them, unless it has from the start. An arm of one participant has no band.
+    than 10 of them, unless it has from the start. An arm of one participant has no band. `time`
+    says what the axis counts.
     """
     incidence = _while_enough_at_risk(incidence)
     time_s, arms = incidence.time_s, (incidence.treatment, incidence.reference)
@@ -69,7 +70,7 @@ def figure_incidence(incidence: Incidence, labels: Labels) -> Drawn:
                 )
         axes.set(xlim=(0, float(time_s[-1]) or 1), ylim=(0, 100))
         axes.locator_params("x", nbins=6, steps=[1, 2, 5, 10])
-        axes.set(xlabel="Motion seen, s", ylabel="Trials stopped, %")
+        axes.set(xlabel=f"{time}, s", ylabel="Trials stopped, %")
         at_risk = (curves.at_risk[marked] for curves in arms)
         counts_below(axes, "Trials not ended before", time_s[marked], *at_risk)
         legend_above(figure, axes)

@@ -13,9 +13,10 @@ from ..statistics.survival import Incidence
 from .document import Heading, Items, Paragraph, Part
 from .method_tables import PRIMARY, method_names
 
+_MOTION_ONLY = "both count motion only"
+_AS_GIVEN = "both are as the table gives them; whether a lead-in is counted in is not known"
 _DEFINITIONS = (
-    "Time of prediction is the stop time if the guess was correct, else the full length; both "
-    "count motion only.",
+    "Time of prediction is the stop time if the guess was correct, else the full length; {times}.",
     "Estimates are signed: positive means more with {treatment}. An AUC is the probability that a "
     "trial with {treatment} has the larger value than one with {reference}, ties counted half; .5 "
     "is no difference.",
@@ -35,12 +36,16 @@ _DEFINITIONS = (
 
 def fine_print_parts(data: Dataset, evidence: Evidence, packages: Mapping[str, str]) -> list[Part]:
     """Return what is needed to check the report, or to make it again."""
-    labels = {"treatment": data.arms.treatment.label, "reference": data.arms.reference.label}
+    words = {
+        "treatment": data.arms.treatment.label,
+        "reference": data.arms.reference.label,
+        "times": _MOTION_ONLY if data.exported else _AS_GIVEN,
+    }
     files = (f"{each.file}: {each.rows:,} rows, SHA-256 {each.sha256}" for each in data.sources)
     software = ", ".join(f"{name} {version}" for name, version in packages.items())
     return [
         Heading("Fine print"),
-        Items(tuple(each.format(**labels) for each in _DEFINITIONS)),
+        Items(tuple(each.format(**words) for each in _DEFINITIONS)),
         Heading("Methods and their sources", 3),
         Items(_sources(evidence)),
         *_plan(data.plan),

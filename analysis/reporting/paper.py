@@ -16,20 +16,27 @@ _INDEPENDENT = (
     "kept so that numbers can be compared with it. Trials of one participant, and trials of one "
     "scenario, resemble each other, so these p values and intervals overstate certainty."
 )
-_LEAD_IN = (
-    "The original videos contain about 5 s of lead-in before the robot moves. Goalguess counts "
-    "motion only, so the paper's mean times of 15.67 s and 18.22 s cannot be compared with times "
-    "that Goalguess recorded."
+_LEAD_IN = "The original videos contain about 5 s of lead-in before the robot moves."
+_MOTION_ONLY = (
+    "Goalguess counts motion only, so the paper's mean times of 15.67 s and 18.22 s cannot be "
+    "compared with times that Goalguess recorded."
+)
+_AS_GIVEN = (
+    "Times are as the table gives them; whether a lead-in is counted in is not known, nor so "
+    "whether they can be compared with the paper's mean times of 15.67 s and 18.22 s."
 )
 
 
-def paper_parts(block: PaperBlock) -> list[Part]:
-    """Return the paper's statistics: in words, then a table a measure."""
+def paper_parts(block: PaperBlock, *, exported: bool) -> list[Part]:
+    """Return the paper's statistics: in words, then a table a measure.
+
+    `exported` is whether Goalguess made the table of trials, and so counted the times itself.
+    """
     return [
         Heading(TITLE),
         Paragraph(_INDEPENDENT),
         Items(paper_sentences(block)),
-        Paragraph(_LEAD_IN),
+        Paragraph(f"{_LEAD_IN} {_MOTION_ONLY if exported else _AS_GIVEN}"),
         *_correct(block),
         *_ranked(block.prediction_time, block.arms, "Time of prediction"),
         *_ranked(block.confidence, block.arms, "Confidence"),

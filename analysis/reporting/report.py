@@ -48,7 +48,7 @@ def report_parts(
         *stops_parts(evidence, plan),
         *chance_parts(evidence, plan),
         *discrimination_parts(evidence, plan),
-        *paper_parts(evidence.paper),
+        *paper_parts(evidence.paper, exported=data.exported),
         *likeness_parts(evidence),
         Heading("Sentences for a manuscript"),
         Items(apa_sentences(evidence, plan)),
@@ -61,7 +61,7 @@ def brief_parts(results: Results) -> list[Part]:
     data, paper = results.data, results.evidence.paper
     return [
         *_answer(results),
-        *paper_parts(paper),
+        *paper_parts(paper, exported=data.exported),
         Heading("Who took part"),
         *sample_parts(paper.sample, data.flow, data.arms),
         *demographics_parts(paper),

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import polars as pl
+import pytest
 
 from analysis.reporting.drawings import drawings
 
@@ -24,3 +25,11 @@ def test_the_caption_of_incidence_has_the_shares_counted_of_all_trials(paper):
         f"Counted, of all trials: {counted[True]:.1f} % with PoLMDP, {counted[False]:.1f} % with "
         "optimal ended in a correct stop."
     )
+
+
+@pytest.mark.parametrize(("exported", "label"), [(True, "Motion seen, s"), (False, "Time, s")])
+def test_only_of_an_export_the_axis_of_incidence_says_that_it_counts_motion(paper, exported, label):
+    data = replace(paper.data, exported=exported)
+    figures = {each.name: each for each in drawings(data, paper.evidence)}
+    (axes,) = figures["incidence"].draw().figure.axes
+    assert axes.get_xlabel() == label
