@@ -59,10 +59,11 @@ def _told(table: LevelTable, participants: int) -> str:
     from .reporting.document import Grid, Paragraph
     from .reporting.plain import plain_text
     from .simulated_studies import ALPHA
+    from .wording import words_of_test
 
     header = ("test", *("/".join(f"{sd:g}" for sd in astuple(each)) for each in table.spreads))
     rows = tuple(
-        (test.replace("_", " "), *(f"{each.rejected.share:.3f}" for each in row))
+        (words_of_test(test), *(f"{each.rejected.share:.3f}" for each in row))
         for test, row in table.rows.items()
     )
     caption = (
@@ -75,8 +76,7 @@ def _told(table: LevelTable, participants: int) -> str:
         "95 % of such simulations."
     )
     undefined = {
-        test.replace("_", " "): sum(each.undefined for each in row)
-        for test, row in table.rows.items()
+        words_of_test(test): sum(each.undefined for each in row) for test, row in table.rows.items()
     }
     without = [f"{count} of {test}" for test, count in undefined.items() if count]
     if without:

@@ -99,10 +99,11 @@ def _told(power: Power) -> str:
     from .power import UNCORRECTED
     from .reporting.document import Grid, Items, Paragraph
     from .reporting.plain import plain_text
+    from .wording import words_of_test
 
     rows = tuple(
         (
-            point.result.test.replace("_", " "),
+            words_of_test(point.result.test),
             str(point.participants),
             str(point.result.rejected.n),
             f"{100 * point.result.rejected.share:.1f} %",
@@ -111,14 +112,14 @@ def _told(power: Power) -> str:
         )
         for point in power.points
     )
-    header = ("test", "participants", "studies", "power", "95 % Monte-Carlo", "undefined")
+    header = ("test", "participants", "studies", "power", "95 % Monte-Carlo", "not testable")
     question = power.question
     caption = (
         f"Power for {question.model.measure}: {question.trials_each} trials of each participant, "
         f"{question.scenarios} scenarios, p < .05 uncorrected"
     )
     needed = tuple(
-        f"{each.test.replace('_', ' ')}, {100 * each.power:g} %: "
+        f"{words_of_test(each.test)}, {100 * each.power:g} %: "
         + (
             f"{each.participants} participants"
             if each.participants

@@ -75,3 +75,9 @@ def normality_apa(test: Normality) -> str:
         return f"{test.method}: not defined, n = {test.n}"
     p = format_p(test.p, test.p_relation)
     return f"{test.method}: {test.symbol} = {test.statistic:.4f}, {p}, n = {test.n}"
+
+
+def words_of_test(test: str) -> str:
+    """Write the name of a test in words: two-way AUC for two_way_auc."""
+    words = test.replace("two_way", "two-way").replace("_", " ")
+    return words.replace("auc", "AUC")

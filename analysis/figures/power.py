@@ -9,6 +9,7 @@ import numpy as np
 import polars as pl
 
 from ..power import TARGETS, Power, PowerPoint
+from ..wording import words_of_test
 from .drawn import Drawn
 from .style import COLOURS, FAINT, LINES, MARKERS, legend_above, panel
 
@@ -64,7 +65,7 @@ def _dots(figure: Figure, axes: Axes, points: Sequence[PowerPoint], place: int) 
         fmt=MARKERS[place],
         color=COLOURS[place],
         capsize=3,
-        label=points[0].result.test.replace("_", " "),
+        label=words_of_test(points[0].result.test),
         transform=axes.transData + aside,
     )
 
@@ -95,6 +96,6 @@ def _alt(power: Power) -> str:
             f"{100 * point.result.rejected.share:.1f} % with {point.participants}"
             for point in (points[0], points[-1])
         )
-        return f"{test.replace('_', ' ')} from {first} to {last} participants"
+        return f"{words_of_test(test)} from {first} to {last} participants"
 
     return f"Power by participants: {'; '.join(map(rises, power.question.tests))}."

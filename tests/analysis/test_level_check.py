@@ -53,7 +53,7 @@ def test_the_command_prints_a_row_a_test_and_a_column_for_each_of_the_sds():
     header = next(place for place, line in enumerate(lines) if line.startswith("test "))
     assert lines[header].split() == ["test", "0/0/0", "0.8/0.5/0.8"]
     assert [" ".join(line.split()[:-2]) for line in lines[header + 1 : header + 3]] == [
-        "two way auc",
+        "two-way AUC",
         "chi square",
     ]
     assert "Monte-Carlo error" in result.stdout

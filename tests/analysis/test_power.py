@@ -146,7 +146,7 @@ def test_the_figure_says_in_words_what_it_shows():
     power = power_at(question(studies=20), [20, 60], 1, tell_nobody)
     drawn = figure_power(power)
     first, last = (f"{100 * value:.1f} %" for value in shares(power))
-    assert f"two way difference from {first} with 20 to {last} with 60" in drawn.alt
+    assert f"two-way difference from {first} with 20 to {last} with 60" in drawn.alt
     assert drawn.data["power"].to_list() == shares(power)
 
 
@@ -155,7 +155,8 @@ def test_the_command_prints_the_table_and_writes_what_it_rests_on(tmp_path):
     options = ["--participants", "20,40", "--simulations", "30", "--workers", "1", "--seed", "3"]
     result = run(*options, "--to", str(folder))
     assert result.exit_code == 0, result.stderr
-    assert "two way difference            40       30" in result.stdout
+    assert "two-way difference            40       30" in result.stdout
+    assert "not testable" in result.stdout
     assert {path.name for path in folder.iterdir()} == {
         f"power.{suffix}" for suffix in ("json", "csv", "svg", "png")
     }

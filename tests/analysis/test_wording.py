@@ -16,6 +16,7 @@ from analysis.wording import (
     normality_apa,
     percent,
     without_zero,
+    words_of_test,
 )
 
 
@@ -98,3 +99,11 @@ def test_an_undefined_normality_says_so():
 
 def test_normality_prints_its_statistic():
     assert normality_apa(normality([1.0, 2.0, 3.0])).startswith("Shapiro-Wilk: W = 1.0000, p ")
+
+
+@pytest.mark.parametrize(
+    ("test", "words"),
+    [("two_way_difference", "two-way difference"), ("clustered_auc", "clustered AUC")],
+)
+def test_tests_are_named_in_words(test, words):
+    assert words_of_test(test) == words
