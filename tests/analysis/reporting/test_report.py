@@ -179,10 +179,21 @@ def test_terminal_text_is_plain_and_narrow(paper):
     assert max(len(line) for line in text.splitlines()) <= 100
 
 
-def test_the_fine_print_says_that_lead_in_makes_times_incomparable(paper):
-    text = markdown(report_parts(paper))
+def test_an_exports_times_count_motion_only_and_so_cannot_be_compared_with_the_papers(export):
+    text = markdown(report_parts(analyse_path(export)))
     assert "about 5 s of lead-in" in text
     assert "15.67 s and 18.22 s cannot be compared" in text
+    assert "else the full length; both count motion only." in text
+    assert "as the table gives them" not in text
+
+
+def test_of_a_table_from_elsewhere_nothing_is_said_to_be_known_of_its_lead_in(paper):
+    text = markdown(report_parts(paper))
+    assert "about 5 s of lead-in" in text
+    assert "motion only" not in text
+    as_given = "are as the table gives them; whether a lead-in is counted in is not known"
+    assert f"Times {as_given}" in text
+    assert f"else the full length; both {as_given}." in text
 
 
 def test_a_single_table_has_no_demographics_and_says_so(paper):
