@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..arms import Arms
-from ..conclusions import Conclusion, Direction
+from ..conclusions import EXPECTED, Conclusion, Direction
 from ..methods import Comparison
 from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import format_alpha, format_p, percent
-from .document import Finding, Part
+from .document import Finding, Paragraph, Part
 from .effects import beyond, effect_of, estimate, interval, statement
 
 
@@ -39,14 +39,19 @@ def answers(
     arms: Arms,
     alpha: float,
 ) -> list[Part]:
-    """Return the answer of each primary test, in the plan's order."""
-    return [
+    """Answer each primary test in the plan's order, then each hypothesis of several measures."""
+    by_hypothesis: dict[str, list[Conclusion]] = {}
+    for each in conclusions:
+        by_hypothesis.setdefault(each.hypothesis, []).append(each)
+    several = (own for own in by_hypothesis.values() if len(own) > 1)
+    findings = (
         Finding(
             f"{each.hypothesis}, {WORDS[each.measure].name}: {_verdict(each, arms, alpha)}",
             f"{capital(means(comparisons[each.measure], arms))}. {_numbers(each, arms, alpha)}",
         )
         for each in conclusions
-    ]
+    )
+    return [*findings, *map(_together, several)]
 
 
 def capital(text: str) -> str:
@@ -65,6 +70,25 @@ def means(compared: Comparison, arms: Arms) -> str:
         told[0] = f"mean {told[0]}"
     labels = arms.labels.values()
     return ", ".join(f"{each} with {label}" for each, label in zip(told, labels, strict=True))
+
+
+def _together(conclusions: Sequence[Conclusion]) -> Paragraph:
+    """Answer a hypothesis that says something of several measures, all of which it needs."""
+    expected = []
+    for each in conclusions:
+        words = WORDS[each.measure]
+        expected.append(
+            f"{words.more if EXPECTED[each.measure] == 'more' else words.less} {words.name}"
+        )
+    if all(each.supported for each in conclusions):
+        verdict = "shown"
+    elif any(each.supported for each in conclusions):
+        verdict = "in part"
+    elif all(each.direction == "undefined" for each in conclusions):
+        verdict = "not to be tested with these data"
+    else:
+        verdict = "not shown"
+    return Paragraph(f"{conclusions[0].hypothesis} ({' and '.join(expected)}): {verdict}.")
 
 
 def _verdict(conclusion: Conclusion, arms: Arms, alpha: float) -> str:

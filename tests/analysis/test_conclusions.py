@@ -8,7 +8,7 @@ from analysis import default_plan
 from analysis.conclusions import conclude
 from analysis.methods import Comparison
 from analysis.reporting.answers import answers
-from analysis.reporting.document import Finding
+from analysis.reporting.document import Finding, Paragraph
 from analysis.statistics.estimates import mean
 from analysis.statistics.result import TestResult
 
@@ -172,6 +172,28 @@ def test_a_difference_against_the_hypothesis_is_said_to_be_so():
     correct, _, confidence = said(*concluded(correct=-0.1))
     assert correct.verdict == "H1, correct guesses: fewer with PoLMDP, against the hypothesis."
     assert confidence.verdict == "H2, confidence: lower with PoLMDP, against the hypothesis."
+
+
+@pytest.mark.parametrize(
+    ("auc_of_confidence", "p", "verdict"),
+    [
+        (0.6, (0.01, 0.01, 0.01), "shown"),
+        (0.6, (0.01, 0.01, 0.2), "in part"),
+        (0.4, (0.01, 0.01, 0.01), "in part"),
+        (0.6, (0.01, None, 0.01), "in part"),
+        (0.4, (0.01, None, 0.01), "not shown"),
+        (0.6, (0.01, 0.2, 0.2), "not shown"),
+        (0.6, (0.01, None, None), "not to be tested with these data"),
+    ],
+)
+def test_a_hypothesis_of_two_measures_has_one_answer(auc_of_confidence, p, verdict):
+    comparisons = concluded(p=p)[1]
+    confidence = result(p[2], estimate=auc_of_confidence, null=0.5, unit="probability")
+    comparisons["confidence"] = compared("confidence", confidence)
+    told = answers(conclude(PLAN, comparisons), comparisons, PLAN.arms, PLAN.alpha)
+    assert [part.text for part in told if isinstance(part, Paragraph)] == [
+        f"H2 (shorter time of prediction and higher confidence): {verdict}."
+    ]
 
 
 def test_an_auc_below_a_half_is_told_by_the_larger_share_of_pairs():
