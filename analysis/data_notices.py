@@ -117,7 +117,10 @@ def _fewer_trials_than_planned(data: Dataset) -> list[Notice]:
     n, most = int((trials < planned).sum()), trials.max()
     if not n:
         return []
-    text = f"Participants with fewer than the plan's {planned} trials: {n} of {len(trials)}."
+    text = (
+        f"Participants with fewer than the plan's {planned} trials: {n} of {len(trials)}; the "
+        "trials they answered are analysed."
+    )
     if most < planned:
         text = f"Nobody has the plan's {planned} trials; the most that anyone has are {most}."
     return [Notice("fewer_trials_than_planned", "participants", text)]

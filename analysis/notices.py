@@ -73,7 +73,7 @@ def _about_gaps(data: Dataset, block: PaperBlock) -> list[Notice]:
             text = f"{name.capitalize()}: {missing} missing, left out of its numbers."
             found.append(Notice("missing_values", name, text))
     incomplete = sum(arm.incomplete for arm in block.sample.arms.values())
-    if incomplete:
+    if incomplete and not _incomplete_by_the_plan(data, block):
         text = (
             f"Incomplete participants: {incomplete} ({block.sample.incomplete_means}); "
             "the trials they answered are analysed."
@@ -88,3 +88,9 @@ def _about_gaps(data: Dataset, block: PaperBlock) -> list[Notice]:
             Notice("columns_renamed", "trials", f"Columns read under other names: {pairs}.")
         )
     return found
+
+
+def _incomplete_by_the_plan(data: Dataset, block: PaperBlock) -> bool:
+    """Tell whether incomplete are those with fewer trials than planned, noted with the data."""
+    most = max(arm.most_trials for arm in block.sample.arms.values())
+    return data.participants is None and most >= data.plan.trials_per_participant

@@ -76,7 +76,9 @@ def test_scenarios_of_which_none_is_shared_are_said_to_be_all(told):
 
 def test_participants_with_fewer_trials_than_planned_are_counted(told):
     rows = many(10, 10)[:-2]
-    assert told(rows)["fewer_trials_than_planned"].endswith("the plan's 10 trials: 1 of 20.")
+    assert told(rows)["fewer_trials_than_planned"].endswith(
+        "the plan's 10 trials: 1 of 20; the trials they answered are analysed."
+    )
 
 
 def test_a_plan_that_deals_more_trials_than_anyone_has_is_told_so(told):

@@ -65,3 +65,11 @@ def test_who_is_excluded_is_said_to_be_in_the_whole_lists(results_of):
     assert "all who began, excluded or not, count with the plan's 2 trials" in text
     assert "| correct guesses, intention to treat |" in text
     assert "all who began count" in markdown(report_parts(results_of(6)))
+
+
+def test_who_has_fewer_trials_than_planned_is_counted_in_one_note(results_of):
+    results = results_of(1)
+    assert "fewer_trials_than_planned" in codes(results)
+    assert "incomplete_participants" not in codes(results)
+    nobody_has_them = replace(PLAN, trials_per_participant=3)
+    assert "incomplete_participants" in codes(results_of(1, nobody_has_them))
