@@ -20,7 +20,7 @@ from .style import (
     legend_above,
     panel,
 )
-from .text import capital, in_sentence, wrapped
+from .text import in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,9 +94,7 @@ def _data(accuracy: AccuracyBy, labels: Labels) -> pl.DataFrame:
 
 def _draw(axes: Axes, x: pl.Series, own: pl.DataFrame, arm: int, label: str) -> None:
     """Draw one arm: marks joined by a line, and whiskers where the interval is defined."""
-    name = wrapped(
-        f"{in_sentence(capital(label))}, n = {own['n_trials'].sum():,} trials", LEGEND_POINTS
-    )
+    name = wrapped(f"{in_sentence(label)}, n = {own['n_trials'].sum():,} trials", LEGEND_POINTS)
     shown = own.with_columns(x=x).drop_nulls("percent")
     axes.plot(
         shown["x"],

@@ -21,7 +21,7 @@ from .style import (
     legend_above,
     panel,
 )
-from .text import capital, in_sentence, wrapped
+from .text import in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +51,7 @@ def figure_incidence(incidence: Incidence, labels: Labels, time: str = "Motion s
     with panel(5.0, note) as (figure, axes):
         for arm, (curves, label) in enumerate(zip(arms, labels, strict=True)):
             _band(axes, time_s, curves.correct, COLOURS[arm])
-            name = in_sentence(capital(label))
+            name = in_sentence(label)
             for curve, line, stops in (
                 (curves.correct, LINES[arm], "correct stops"),
                 (curves.wrong, ":", "wrong stops"),

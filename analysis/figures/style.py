@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .text import FONT, SMALL_POINTS, TEXT_POINTS, capital, wrapped
+from .text import FONT, SMALL_POINTS, TEXT_POINTS, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,7 @@ def panel(height_inches: float, note: str) -> Iterator[tuple[Figure, Axes]]:
 def arms_below(axes: Axes, labels: Labels, n: Sequence[int]) -> None:
     """Write each arm with its number of trials below the x axis, at 0 and 1."""
     names = [
-        f"{wrapped(capital(label), 140, 3, TEXT_POINTS)}\nn = {count:,} trials"
+        f"{wrapped(label, 140, 3, TEXT_POINTS)}\nn = {count:,} trials"
         for label, count in zip(labels, n, strict=True)
     ]
     axes.set_xticks(range(len(n)), names, fontsize=TEXT_POINTS)
@@ -104,7 +104,7 @@ def arm_above(axes: Axes, y: float, label: str, numbers: str = "") -> None:
         "xycoords": ("axes fraction", "data"),
         "textcoords": "offset points",
     }
-    name = wrapped(capital(label), 265, 1, TEXT_POINTS, bold=True)
+    name = wrapped(label, 265, 1, TEXT_POINTS, bold=True)
     axes.annotate(name, xytext=(0, 15 if numbers else 3), fontweight="bold", **at)
     axes.annotate(numbers, xytext=(0, 3), fontsize=SMALL_POINTS, **at)
 

@@ -52,9 +52,9 @@ def drawings(data: Dataset, evidence: Evidence) -> Iterator[Drawing]:
         ),
     }
     captions = {
-        "correct": "Share of correct guesses, as in the paper.",
-        TIME: "Mean time of prediction, as in the paper.",
-        CONFIDENCE: "Confidence, as in the paper.",
+        "correct": "Share of correct guesses, as in the paper: trials taken as independent.",
+        TIME: "Mean time of prediction, as in the paper: trials taken as independent.",
+        CONFIDENCE: "Confidence, as in the paper: trials taken as independent.",
     }
     for compared, name in zip(evidence.comparisons.values(), as_in_paper, strict=True):
         words, scale = WORDS[compared.measure].name, scales[compared.measure]

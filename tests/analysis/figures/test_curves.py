@@ -30,8 +30,8 @@ def test_correct_stops_rise_in_the_arms_lines_and_wrong_ones_in_dots():
     assert ends == {
         "PoLMDP: correct stops": ("-", pytest.approx(50)),
         "PoLMDP: wrong stops": (":", pytest.approx(25)),
-        "Optimal: correct stops": ("--", pytest.approx(25)),
-        "Optimal: wrong stops": (":", pytest.approx(25)),
+        "optimal: correct stops": ("--", pytest.approx(25)),
+        "optimal: wrong stops": (":", pytest.approx(25)),
     }
 
 

@@ -84,7 +84,7 @@ def test_confidence_shows_the_whole_scale():
     assert list(axes.get_yticks()) == [1, 2, 3, 4, 5, 6, 7]
     assert [label.get_text() for label in axes.get_xticklabels()] == [
         "PoLMDP\nn = 2 trials",
-        "Optimal\nn = 1 trials",
+        "optimal\nn = 1 trials",
     ]
 
 
@@ -104,7 +104,7 @@ def test_confidence_marks_the_mean_by_a_dot_and_the_median_by_a_thick_line(data)
 def test_every_figure_says_how_many_trials_it_shows(block):
     for drawn in (correct(block), prediction_time(block)):
         labels = [label.get_text() for label in axes_of(drawn).get_xticklabels()]
-        assert labels == ["PoLMDP\nn = 980 trials", "Optimal\nn = 520 trials"]
+        assert labels == ["PoLMDP\nn = 980 trials", "optimal\nn = 520 trials"]
 
 
 def test_equal_values_far_out_are_one_ring():

@@ -33,3 +33,9 @@ def test_only_of_an_export_the_axis_of_incidence_says_that_it_counts_motion(pape
     figures = {each.name: each for each in drawings(data, paper.evidence)}
     (axes,) = figures["incidence"].draw().figure.axes
     assert axes.get_xlabel() == label
+
+
+def test_the_papers_figures_are_said_to_take_trials_as_independent(paper):
+    captions = {each.name: each.caption for each in drawings(paper.data, paper.evidence)}
+    for name in ("correct", "prediction_time", "confidence"):
+        assert captions[name].endswith("as in the paper: trials taken as independent.")
