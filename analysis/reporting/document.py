@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+NOTHING = "–"
+"""In a table, where a number does not exist."""
+
 
 @dataclass(frozen=True)
 class Heading:
@@ -54,3 +57,10 @@ class Picture:
 
 
 Part = Heading | Paragraph | Finding | Items | Grid | Picture
+
+
+def with_reason(grid: Grid, reason: str) -> list[Part]:
+    """Return a table and, if it lacks a number, a line that says why."""
+    if not any(NOTHING in cell for _, *cells in grid.rows for cell in cells):
+        return [grid]
+    return [grid, Paragraph(f"{NOTHING}: {reason}.")]

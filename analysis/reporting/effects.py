@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ..statistics.result import TestResult
 from ..wording import format_p, without_zero
+from .document import NOTHING
 
 _LARGEST_LOG = 700.0
 _MANY_DIGITS = 1000
@@ -77,14 +78,14 @@ def estimate(result: TestResult) -> str:
 
 
 def estimate_cell(result: TestResult) -> str:
-    """Write the estimate for a table: odds ratio 2.70, or NA."""
-    return "NA" if result.estimate is None else effect_of(result).in_cell(result.estimate)
+    """Write the estimate for a table: odds ratio 2.70, or a dash."""
+    return NOTHING if result.estimate is None else effect_of(result).in_cell(result.estimate)
 
 
 def interval(result: TestResult) -> str:
-    """Write the bounds of the 95 % interval: 9.5 to 21.1, or NA."""
+    """Write the bounds of the 95 % interval: 9.5 to 21.1, or a dash."""
     if result.low is None or result.high is None:
-        return "NA"
+        return NOTHING
     write = effect_of(result).write
     return f"{write(result.low)} to {write(result.high)}"
 
@@ -117,6 +118,11 @@ def statistic(result: TestResult) -> str:
 def statement(result: TestResult, alpha: float) -> str:
     """Write statistic and p: t(36) = 5.32, p < .001."""
     return ", ".join(filter(None, (statistic(result), format_p(result.p, alpha=alpha))))
+
+
+def statement_cell(result: TestResult, alpha: float) -> str:
+    """Write statistic and p for a table, or a dash."""
+    return NOTHING if result.p is None else statement(result, alpha)
 
 
 def bracketed(result: TestResult) -> str:

@@ -11,13 +11,14 @@ from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import format_p
 from .answers import WORDS, capital
-from .document import Grid, Heading, Items, Part
+from .document import NOTHING, Grid, Heading, Items, Part, with_reason
 from .effects import beyond, bracketed, estimate_cell, interval, statistic
 
 PRIMARY = " (primary)"
 """What the primary test's name ends with."""
 
 _CLUSTERED = "taking into account that trials of one participant resemble each other"
+_LACKING = "the method gives none, or a note below says why there is none"
 _HEADER = ("", "estimate", "95 % interval", "test", "p", "n")
 
 
@@ -33,7 +34,7 @@ def method_parts(compared: Comparison, alpha: float) -> list[Part]:
     ):
         keys = [key for key in compared.results if (key in INDEPENDENT) == independent]
         rows = (_row(names[key], compared.results[key], alpha) for key in keys)
-        parts.append(Grid(caption, _HEADER, tuple(rows)))
+        parts += with_reason(Grid(caption, _HEADER, tuple(rows)), _LACKING)
     notes = tuple(_notes(compared, names))
     return [*parts, Items(notes)] if notes else parts
 
@@ -61,7 +62,7 @@ def in_shares(model: CrossedLogistic) -> CrossedLogistic:
 
 def p_cell(p: float | None, alpha: float) -> str:
     """Write a p value where the column already says p."""
-    return format_p(p, alpha=alpha).removeprefix("p ").removeprefix("= ")
+    return NOTHING if p is None else format_p(p, alpha=alpha).removeprefix("p ").removeprefix("= ")
 
 
 def _row(name: str, result: TestResult, alpha: float) -> tuple[str, ...]:

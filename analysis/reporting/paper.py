@@ -7,7 +7,7 @@ from ..arms import Arms
 from ..as_in_paper import PaperBlock, Ranked
 from ..demographics import OVERALL
 from ..statistics.estimates import Mean
-from .document import Grid, Heading, Items, Paragraph, Part
+from .document import NOTHING, Grid, Heading, Items, Paragraph, Part, with_reason
 
 TITLE = "As in the paper"
 
@@ -104,13 +104,16 @@ def _ranked(ranked: Ranked, arms: Arms, name: str) -> list[Part]:
     )
     header = ("", "n", f"mean, {unit}", "95 % interval", "SD", "median")
     return [
-        Grid(f"{name}, trials", header, rows),
+        *with_reason(
+            Grid(f"{name}, trials", header, rows),
+            "one trial has no standard deviation, and its mean no interval",
+        ),
         Items((wording.mann_whitney_apa(ranked.test), *normality)),
     ]
 
 
 def _mean_cells(each: Mean) -> tuple[str, ...]:
-    interval, sd = "NA", "NA"
+    interval, sd = NOTHING, NOTHING
     if each.sd is not None:
         interval, sd = f"{each.low:.2f} to {each.high:.2f}", f"{each.sd:.2f}"
     return str(each.n), f"{each.mean:.2f}", interval, sd, f"{each.median:.2f}"
@@ -130,19 +133,17 @@ def demographics_parts(block: PaperBlock) -> list[Part]:
         for answer in answers:
             counts = (_counted(answer.counts[group], found.n[group]) for group in groups)
             rows.append((f"{name}: {answer.answer}", *counts))
-    return [
-        Grid(
-            "Demographics of participants with an analysed trial",
-            ("", *block.arms.labels.values(), "both"),
-            tuple(rows),
-        )
-    ]
+    header = ("", *block.arms.labels.values(), "both")
+    return with_reason(
+        Grid("Demographics of participants with an analysed trial", header, tuple(rows)),
+        "no age was told, or one alone, which has no standard deviation",
+    )
 
 
 def _age(age: Mean | None) -> tuple[str, str, str]:
     if age is None:
-        return "NA", "NA", "0"
-    sd = "NA" if age.sd is None else f"{age.sd:.1f}"
+        return NOTHING, NOTHING, "0"
+    sd = NOTHING if age.sd is None else f"{age.sd:.1f}"
     return f"{age.mean:.1f} ({sd})", f"{age.minimum:.0f} to {age.maximum:.0f}", str(age.n)
 
 

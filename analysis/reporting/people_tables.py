@@ -10,8 +10,8 @@ from ..sample import Sample
 from ..statistics.result import TestResult
 from ..wording import format_p
 from .answers import WORDS
-from .document import Grid, Heading, Paragraph, Part
-from .effects import EFFECTS, estimate_cell, interval, statement
+from .document import Grid, Heading, Paragraph, Part, with_reason
+from .effects import EFFECTS, estimate_cell, interval, statement_cell
 
 
 def sample_parts(sample: Sample, flow: Flow, arms: Arms) -> list[Part]:
@@ -51,10 +51,13 @@ def sensitivity_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     return [
         Heading("Who left", 3),
         Paragraph(_who_left(evidence, plan)),
-        Grid(
-            "Primary tests on other selections",
-            ("", "estimate", "95 % interval", "test", "trials"),
-            rows,
+        *with_reason(
+            Grid(
+                "Primary tests on other selections",
+                ("", "estimate", "95 % interval", "test", "trials"),
+                rows,
+            ),
+            "not defined with these trials",
         ),
         Paragraph(_meaning(evidence, plan)),
     ]
@@ -104,7 +107,7 @@ def _selection_row(name: str, result: TestResult | None, alpha: float) -> tuple[
         name,
         estimate_cell(result),
         interval(result),
-        statement(result, alpha),
+        statement_cell(result, alpha),
         f"{result.n:,}",
     )
 

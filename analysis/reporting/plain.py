@@ -5,14 +5,16 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from .document import Finding, Grid, Heading, Items, Paragraph, Part, Picture
+from .document import NOTHING, Finding, Grid, Heading, Items, Paragraph, Part, Picture
 
 _WIDTH = 88
 
 
 def plain_text(parts: Sequence[Part]) -> str:
     """Render for the terminal: tables aligned, paragraphs wrapped, pictures left out."""
-    return "\n\n".join(_plain(part) for part in parts if not isinstance(part, Picture)) + "\n"
+    text = "\n\n".join(_plain(part) for part in parts if not isinstance(part, Picture))
+    # not every terminal has the sign
+    return text.replace(NOTHING, "-") + "\n"
 
 
 def _plain(part: Part) -> str:
