@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
@@ -17,12 +18,22 @@ _NAMES: dict[type, str] = {str: "a text", float: "a number", int: "a whole numbe
 def read_toml(path: Path) -> dict[str, Any]:
     """Return what the file holds; AnalysisError if it cannot be read, TomlError if no TOML."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        return tomllib.loads(text)
     except OSError as error:
         reason = error.strerror or str(error)
         raise AnalysisError(f"{path}: expected a TOML file, got: {reason}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
         raise TomlError(path.name, "", "TOML in UTF-8", str(error)) from error
+    except tomllib.TOMLDecodeError as error:
+        got = str(error) + _hint(text)
+        raise TomlError(path.name, "", "TOML in UTF-8", got) from error
+
+
+def _hint(text: str) -> str:
+    """Say how TOML writes the first number that begins with its point."""
+    found = re.search(r"^[^#=\n]*=\s*([+-]?)(\.\d+)", text, re.MULTILINE)
+    return f"; write {found[1]}0{found[2]} for {found[1]}{found[2]}" if found else ""
 
 
 def content_sha256(content: Mapping[str, Any]) -> str:

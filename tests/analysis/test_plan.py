@@ -147,3 +147,18 @@ def test_a_file_that_is_no_toml_or_not_there_is_one_clear_error(plan_of, tmp_pat
         plan_of("alpha 0.05")
     with pytest.raises(AnalysisError, match=r"nothing\.toml: expected a TOML file, got"):
         read_plan(tmp_path / "nothing.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "hint"),
+    [("alpha = .05", "write 0.05 for .05"), ("a = 1\nb=-.5", "write -0.5 for -.5")],
+)
+def test_a_number_that_toml_does_not_know_is_told_how_to_be_written(plan_of, text, hint):
+    with pytest.raises(TomlError, match=rf"; {hint}$"):
+        plan_of(text)
+
+
+@pytest.mark.parametrize("text", ["# alpha = .05\nalpha 0.05", 'alpha = "none'])
+def test_what_is_no_such_number_gets_no_hint(plan_of, text):
+    with pytest.raises(TomlError, match=r"\)$"):
+        plan_of(text)
