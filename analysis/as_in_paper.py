@@ -71,7 +71,8 @@ def _values_of_arms(data: Dataset, measure: str) -> dict[str, NDArray[np.float64
     values = {arm: values_of(data, arm, measure) for arm in data.arms.names}
     for arm, each in values.items():
         if np.isnan(each).all():
-            raise EmptyArmError(arm, "guess" if measure == "correct" else measure)
+            name = "guess" if measure == "correct" else measure
+            raise EmptyArmError(arm, name, file=data.sources[0].file)
     return values
 
 

@@ -54,9 +54,11 @@ class TomlError(AnalysisError):
 class EmptyArmError(AnalysisError):
     """A condition without any value: there is nothing to compare.
 
-    `arm` is the condition's name, `measure` what was to be compared.
+    `arm` is the condition's name, `measure` what was to be compared, `file` where it was looked
+    for, empty if that is not known.
     """
 
-    def __init__(self, arm: str, measure: str, note: str = "") -> None:
-        self.arm, self.measure = arm, measure
-        super().__init__(f"condition {arm}: expected at least one {measure}, got none{note}")
+    def __init__(self, arm: str, measure: str, note: str = "", file: str = "") -> None:
+        self.arm, self.measure, self.file = arm, measure, file
+        where = f"{file}, condition {arm}" if file else f"condition {arm}"
+        super().__init__(f"{where}: expected at least one {measure}, got none{note}")

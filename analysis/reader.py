@@ -36,13 +36,14 @@ def read_dataset(
         participants = None if participants is None else _only_real(participants)
     compared = pl.col("condition").is_in(plan.arms.names)
     trials, others = chosen.filter(compared), chosen.filter(~compared)
-    _check_arms(plan, trials, _why_empty(plan, len(study.trials) - len(chosen), others))
+    file = study.sources[0].file
+    _check_arms(plan, trials, file, _why_empty(plan, len(study.trials) - len(chosen), others))
     trials = trials.with_columns(treated=pl.col("condition") == plan.arms.treatment.condition)
     excluded = exclude(plan.exclusions, trials, participants, plan.file)
     out = [name for each in excluded for name in each.participants]
     kept = ~pl.col("participant").is_in(out)
     analysed = trials.filter(kept)
-    _check_arms(plan, analysed, f" ({len(out)} participants excluded by the plan)")
+    _check_arms(plan, analysed, file, f" ({len(out)} participants excluded by the plan)")
     others_by_condition = _by_condition(others, pl.col("participant").n_unique())
     return Dataset(
         plan=plan,
@@ -84,7 +85,7 @@ def _why_empty(plan: Plan, unreal: int, others: pl.DataFrame) -> str:
     return f"{note}; {plan.file} compares none of: {found}" if found else note
 
 
-def _check_arms(plan: Plan, trials: pl.DataFrame, note: str) -> None:
+def _check_arms(plan: Plan, trials: pl.DataFrame, file: str, note: str) -> None:
     for condition in plan.arms.names:
         if trials.filter(pl.col("condition") == condition).is_empty():
-            raise EmptyArmError(condition, "trial", note)
+            raise EmptyArmError(condition, "trial", note, file)

@@ -26,7 +26,7 @@ from .participant_rules import participant_problems
 from .scanning import FORMATS, is_empty_jsonl, scan, typed
 from .tables import read_rows
 from .trial_rules import membership_problems, trial_problems
-from .validation import ROW, column_problems, raise_first
+from .validation import ROW, column_problems, lacking, raise_first
 
 NEEDED = (
     "participant",
@@ -125,6 +125,8 @@ def _read_trials(
     present = [column for column in table.columns if column.name in sources]
     raw = raw.select(ROW, *(pl.col(theirs).alias(ours) for ours, theirs in sources.items()))
     trials, problems = typed(raw, present, path)
+    if trials.is_empty():
+        raise TableError(path.name, "at least one trial", "no rows")
     trials = mapping.translated(trials)
     unread = [problem.column for problem in problems]
     optional = [*unread, *(() if _is_export(sources) else ANSWERS)]
@@ -154,7 +156,7 @@ def _check_columns(path: Path, names: list[str], present: Collection[str]) -> No
     if "correct" not in present and not {"guess", "goal"} <= set(present):
         missing.append("correct (or guess and goal)")
     if missing:
-        raise TableError(path.name, f"columns {', '.join(missing)}", ", ".join(names), row=1)
+        raise lacking(path.name, missing, names)
 
 
 def _with_measures(trials: pl.DataFrame) -> pl.DataFrame:

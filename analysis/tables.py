@@ -17,7 +17,7 @@ from .columns import Column, Kind, Table
 from .errors import TableError
 from .files import folder_for_writing, replacing
 from .scanning import FORMATS, is_empty_jsonl, scan, typed
-from .validation import ROW, column_problems, raise_first
+from .validation import ROW, column_problems, lacking, raise_first
 
 _TIME_FORMAT = "%Y-%m-%dT%H:%M:%S%.6fZ"
 
@@ -75,7 +75,7 @@ def read_rows(table: Table, path: Path) -> pl.DataFrame:
         return empty
     raw, names = scan(path)
     if missing := [name for name in table.always if name not in names]:
-        raise TableError(path.name, f"columns {', '.join(missing)}", ", ".join(names), row=1)
+        raise lacking(path.name, missing, names)
     present = [column for column in table.columns if column.name in names]
     frame, problems = typed(raw, present, path)
     # a cell that could not be read is not missing as well

@@ -46,6 +46,12 @@ def raise_first(
     )
 
 
+def lacking(file: str, missing: Sequence[str], names: Sequence[str]) -> TableError:
+    """Return the error that tells which columns a file lacks; `names` are those it has."""
+    noun = "column" if len(missing) == 1 else "columns"
+    return TableError(file, f"{noun} {', '.join(missing)}", ", ".join(names), row=1)
+
+
 def broken(
     frame: pl.DataFrame, breaks: pl.Expr, code: str, column: str, expected: str, *shown: str
 ) -> list[Problem]:

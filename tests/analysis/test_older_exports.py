@@ -100,5 +100,5 @@ def test_it_is_held_to_the_contract_it_was_made_under(export):
 @pytest.mark.parametrize("column", ["age", "status", "trials_answered"])
 def test_a_column_that_every_version_wrote_is_asked_for(export, column):
     without(export / "participants.csv", [*ADDED["participants"], column])
-    with pytest.raises(TableError, match=f"expected columns {column}, got"):
+    with pytest.raises(TableError, match=f"expected column {column}, got"):
         read_dataset(export)

@@ -130,14 +130,17 @@ def test_a_study_of_simulated_participants_only_says_what_was_left_out(tmp_path)
 
 def test_an_arm_without_trials_is_named(tmp_path):
     rows = [row for row in six_participants() if row["condition"] == "polmdp"]
-    with pytest.raises(EmptyArmError, match="condition optimal: expected at least one trial"):
+    with pytest.raises(
+        EmptyArmError, match=r"trials.csv, condition optimal: expected at least one trial"
+    ):
         read_dataset(write_table(TRIALS, rows, tmp_path)[0])
 
 
 def test_an_export_without_any_row_is_one_clear_error(tmp_path):
     for path in write_table(TRIALS, [], tmp_path):
-        with pytest.raises(AnalysisError, match="expected at least one trial"):
+        with pytest.raises(AnalysisError) as caught:
             read_dataset(path)
+        assert str(caught.value).startswith(f"{path.name}: expected at least one trial, got ")
 
 
 @pytest.mark.parametrize(("separator", "called"), [(";", "semicolons"), ("\t", "tabs")])
@@ -291,7 +294,13 @@ def test_a_needed_column_that_is_missing_is_named(tmp_path, column):
     error = complaint(as_csv(tmp_path / "t.csv", rows))
     named = {"video": "scenario", "trial": "trial_index"}.get(column, column)
     assert error.row == 1
-    assert f"expected columns {named}, got " in str(error)
+    assert f"expected column {named}, got " in str(error)
+
+
+def test_several_missing_columns_are_named_together(tmp_path):
+    rows = [{"participant": "P1", "condition": "optimal", "correct": 1}]
+    error = complaint(as_csv(tmp_path / "t.csv", rows))
+    assert "expected columns scenario, trial_index, " in str(error)
 
 
 def test_without_correct_it_takes_guess_and_goal(tmp_path):
