@@ -10,8 +10,10 @@ from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import percent, without_zero
 from .answers import WORDS
-from .document import Grid, Heading, Items, Paragraph, Part
-from .effects import beyond, bracketed, effect_of, interval, statement
+from .document import NOTHING, Grid, Heading, Items, Paragraph, Part, with_reason
+from .effects import beyond, bracketed, effect_of, interval, statement, statement_cell
+
+_UNDEFINED = "not defined with these data; a note below says why"
 
 
 def likeness_parts(evidence: Evidence) -> list[Part]:
@@ -36,7 +38,11 @@ def likeness_parts(evidence: Evidence) -> list[Part]:
             "on the verdict of the paper's test tips: it would no longer be significant at .05. "
             "Scenarios, which are alike too, come on top of it."
         ),
-        Grid("The paper's tests and clustering by participant", header, rows),
+        *with_reason(
+            Grid("The paper's tests and clustering by participant", header, rows),
+            "not defined where participants have one trial each, all values are equal, or no "
+            "participant's trials differ",
+        ),
     ]
 
 
@@ -45,9 +51,9 @@ def chance_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     rows = tuple(
         (
             label,
-            percent(test.estimate) if test.estimate is not None else "NA",
+            percent(test.estimate) if test.estimate is not None else NOTHING,
             interval(test),
-            statement(test, plan.alpha),
+            statement_cell(test, plan.alpha),
         )
         for label, test in zip(plan.arms.labels.values(), evidence.chance, strict=True)
     )
@@ -55,7 +61,7 @@ def chance_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     header = ("", "correct", "95 % interval, %", "test")
     return [
         Heading("Against chance", 3),
-        Grid(caption, header, rows),
+        *with_reason(Grid(caption, header, rows), _UNDEFINED),
         *_notes(zip(plan.arms.labels.values(), evidence.chance, strict=True)),
     ]
 
@@ -91,19 +97,22 @@ def discrimination_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     rows = tuple(
         (
             label,
-            "NA" if test.estimate is None else effect_of(test).write(test.estimate),
+            NOTHING if test.estimate is None else effect_of(test).write(test.estimate),
             interval(test),
-            statement(test, plan.alpha),
-            "NA" if test.gamma is None else without_zero(test.gamma, 3),
+            statement_cell(test, plan.alpha),
+            NOTHING if test.gamma is None else without_zero(test.gamma, 3),
         )
         for label, test in zip(plan.arms.labels.values(), evidence.discrimination, strict=True)
     )
     return [
         Heading("Whether confidence tells right from wrong", 3),
-        Grid(
-            "Confidence of right against wrong guesses; an AUC of .5 tells nothing",
-            ("", "AUC", "95 % interval", "test", "gamma"),
-            rows,
+        *with_reason(
+            Grid(
+                "Confidence of right against wrong guesses; an AUC of .5 tells nothing",
+                ("", "AUC", "95 % interval", "test", "gamma"),
+                rows,
+            ),
+            _UNDEFINED,
         ),
         *_notes(zip(plan.arms.labels.values(), evidence.discrimination, strict=True)),
     ]
@@ -111,15 +120,15 @@ def discrimination_parts(evidence: Evidence, plan: Plan) -> list[Part]:
 
 def _likeness_row(name: str, likeness: Likeness) -> tuple[str, ...]:
     correlation, tipping = likeness.correlation, likeness.tipping
-    effect = "NA" if likeness.design_effect is None else f"{likeness.design_effect:.2f}"
+    effect = NOTHING if likeness.design_effect is None else f"{likeness.design_effect:.2f}"
     value = correlation.estimate
     return (
         name,
-        "NA" if value is None else without_zero(value, 3),
+        NOTHING if value is None else without_zero(value, 3),
         interval(correlation),
         effect,
-        "NA" if tipping is None else _tipping_effect(tipping.design_effect_max),
-        "NA" if tipping is None else _tipping_correlation(tipping.icc_max),
+        NOTHING if tipping is None else _tipping_effect(tipping.design_effect_max),
+        NOTHING if tipping is None else _tipping_correlation(tipping.icc_max),
     )
 
 
@@ -129,10 +138,10 @@ def _tipping_effect(largest: float) -> str:
 
 def _tipping_correlation(largest: float | None) -> str:
     if largest is None:
-        return "NA"
+        return NOTHING
     if largest < 0:
         return "not significant"
-    return "none" if largest > 1 else without_zero(largest, 3)
+    return "stays significant at any" if largest > 1 else without_zero(largest, 3)
 
 
 def _notes(named: Iterable[tuple[str, TestResult]]) -> list[Part]:
