@@ -10,6 +10,12 @@ from .dataset import Dataset
 from .statistics import codes
 from .statistics.inference import FEW
 
+NO_RESULT = ("synthetic_data", "simulated_included")
+"""Codes of notices that the numbers are no result, which go wherever the numbers go."""
+
+_SYNTHETIC_SHA256 = "4c6b0d3b083d3bf298a6a4e1cb210b924cae5c2963fcca90e9a3deeb4ea47e94"
+"""Of the table of 1,500 trials that was made up because the authors' data are not published."""
+
 _NAMED = 5
 """So many names are written out; the rest are counted."""
 
@@ -26,6 +32,7 @@ class Notice:
 def data_notices(data: Dataset) -> list[Notice]:
     """Tell which trials were left out, what was pooled, and where the design was not kept."""
     return [
+        *_synthetic(data),
         *_selection(data),
         *_exclusions(data),
         *_several_studies(data),
@@ -33,6 +40,13 @@ def data_notices(data: Dataset) -> list[Notice]:
         *_scenarios_not_shared(data),
         *_fewer_trials_than_planned(data),
     ]
+
+
+def _synthetic(data: Dataset) -> list[Notice]:
+    if all(source.sha256 != _SYNTHETIC_SHA256 for source in data.sources):
+        return []
+    text = "Not a result: synthetic data, made to print the paper's numbers."
+    return [Notice("synthetic_data", "trials", text)]
 
 
 def _selection(data: Dataset) -> list[Notice]:

@@ -59,7 +59,7 @@ def _texts(results: Results, pictures: Pictures, figures: Path) -> dict[str, str
         "report.html": html(parts, drawn),
         "report.md": markdown(parts),
         "report.json": as_text + "\n",
-        "apa.txt": "\n".join(apa_sentences(results.evidence, results.data.plan)) + "\n",
+        "apa.txt": "\n".join(apa_sentences(results)) + "\n",
     }
 
 

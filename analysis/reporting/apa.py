@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from ..arms import Arms
 from ..conclusions import Conclusion
+from ..data_notices import NO_RESULT
 from ..evidence import Evidence
 from ..plan import Plan
+from ..results import Results
 from ..wording import chi_square_apa, format_p, mann_whitney_apa
 from .answers import WORDS, capital, means
 from .effects import bracketed, statement
 
 
-def apa_sentences(evidence: Evidence, plan: Plan) -> tuple[str, ...]:
-    """Return a sentence a result: primary tests, models, stops, then the paper's tests."""
+def apa_sentences(results: Results) -> tuple[str, ...]:
+    """Return a sentence a result: primary tests, models, stops, then the paper's tests.
+
+    Before them stands what makes the numbers no result, such as simulated trials.
+    """
+    evidence, plan = results.evidence, results.data.plan
     paper = evidence.paper
     return (
+        *(notice.text for notice in results.notices if notice.code in NO_RESULT),
         *(_primary(each, evidence, plan) for each in evidence.conclusions),
         *(
             f"Mixed model of {WORDS[each.measure].name}, participants and scenarios crossed: "

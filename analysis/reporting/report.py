@@ -51,7 +51,7 @@ def report_parts(
         *paper_parts(evidence.paper, exported=data.exported),
         *likeness_parts(evidence),
         Heading("Sentences for a manuscript"),
-        Items(apa_sentences(evidence, plan)),
+        Items(apa_sentences(results)),
         *fine_print_parts(data, evidence, results.packages),
     ]
 

@@ -57,7 +57,9 @@ def test_the_page_holds_every_figure_and_needs_no_other_file(written):
 
 
 def test_sentences_for_a_manuscript_have_their_own_file(written):
-    assert (written / "apa.txt").read_text().startswith("Correct guesses: 84.9 % correct with")
+    text = (written / "apa.txt").read_text()
+    assert "\nCorrect guesses: 84.9 % correct with" in text
+    assert text.startswith("Not a result: synthetic data, made to print the paper's numbers.\n")
 
 
 def test_two_trials_are_enough_for_a_whole_report(tmp_path):

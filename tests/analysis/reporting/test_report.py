@@ -155,8 +155,8 @@ def test_the_plan_is_printed_with_its_hash(paper):
 
 
 def test_sentences_for_a_manuscript_are_whole_sentences(paper):
-    sentences = apa_sentences(paper.evidence, paper.data.plan)
-    assert len(sentences) == 9
+    sentences = apa_sentences(paper)
+    assert len(sentences) == 10
     for sentence in sentences:
         assert sentence.endswith(".")
     assert (
@@ -169,7 +169,7 @@ def test_sentences_for_a_manuscript_are_whole_sentences(paper):
 def test_a_manuscript_has_no_p_of_equal_values(tmp_path):
     rows = [row | {"confidence": 5} for row in six_participants()]
     results = analyse_path(write_table(TRIALS, rows, tmp_path)[0])
-    confidence = apa_sentences(results.evidence, results.data.plan)[2]
+    confidence = apa_sentences(results)[2]
     assert "AUC = .500, not to be tested with these data (PoLMDP" in confidence
 
 
@@ -207,13 +207,43 @@ def test_an_export_folder_has_demographics(export):
     assert "| age told by | 3 | 3 | 6 |" in text
 
 
+def test_answers_keep_their_capital_i(tmp_path):
+    rows = six_participants()
+    write_table(TRIALS, rows, tmp_path)
+    people = [
+        person | {"robot_familiarity": "i have seen some", "occupation": "painting"}
+        for person in participants_of(rows)
+    ]
+    write_table(PARTICIPANTS, people, tmp_path)
+    text = markdown(report_parts(analyse_path(tmp_path)))
+    assert "| robot familiarity: I have seen some | 3 " in text
+    assert "| occupation: painting | 3 " in text
+
+
 def test_simulated_trials_in_the_numbers_are_the_first_thing_to_note(tmp_path):
     rows = [*six_participants(), trial_row("bot", 1, "polmdp", simulated=True)]
     path = write_table(TRIALS, rows, tmp_path)[0]
     assert codes(path)[0] == "simulated_left_out"
     assert codes(path, with_simulated=True)[0] == "simulated_included"
-    text = plain_text(report_parts(analyse_path(path, with_simulated=True)))
-    assert "Not a result: 1 simulated and 0 preview trials are in the numbers" in text
+    results = analyse_path(path, with_simulated=True)
+    not_a_result = "Not a result: 1 simulated and 0 preview trials are in the numbers"
+    assert not_a_result in plain_text(report_parts(results))
+    assert apa_sentences(results)[0].startswith(not_a_result)
+    assert apa_sentences(analyse_path(path))[0].startswith("Correct guesses:")
+
+
+def test_the_synthetic_trials_are_said_to_be_no_result_before_all_else_to_note(paper):
+    noted = markdown(report_parts(paper)).partition("## Please note\n\n")[2]
+    said = "Not a result: synthetic data, made to print the paper's numbers."
+    assert noted.startswith(f"- {said}\n")
+    assert said in " ".join(plain_text(brief_parts(paper)).split())
+    assert apa_sentences(paper)[0] == said
+
+
+def test_other_trials_are_not_said_to_be_synthetic(paper_fixture, tmp_path):
+    lines = paper_fixture.read_text().splitlines()
+    (tmp_path / paper_fixture.name).write_text("\n".join(lines[:-1]) + "\n")
+    assert "synthetic_data" not in codes(tmp_path / paper_fixture.name)
 
 
 def test_incomplete_participants_are_noted(tmp_path):
