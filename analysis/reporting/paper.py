@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from .. import wording
 from ..arms import Arms
 from ..as_in_paper import PaperBlock, Ranked
@@ -132,12 +134,17 @@ def demographics_parts(block: PaperBlock) -> list[Part]:
         name = question.replace("_", " ")
         for answer in answers:
             counts = (_counted(answer.counts[group], found.n[group]) for group in groups)
-            rows.append((f"{name}: {answer.answer}", *counts))
+            rows.append((f"{name}: {_in_english(answer.answer)}", *counts))
     header = ("", *block.arms.labels.values(), "both")
     return with_reason(
         Grid("Demographics of participants with an analysed trial", header, tuple(rows)),
         "no age was told, or one alone, which has no standard deviation",
     )
+
+
+def _in_english(answer: str) -> str:
+    # exports hold answers in lower case throughout
+    return re.sub(r"\bi\b", "I", answer)
 
 
 def _age(age: Mean | None) -> tuple[str, str, str]:
