@@ -167,7 +167,7 @@ def test_an_arm_without_any_confidence_is_a_structured_error(tmp_path):
         }
         for number, condition, confidence in ((1, "polmdp", 3), (2, "optimal", None))
     ]
-    with pytest.raises(EmptyArmError, match=r"condition optimal: .* confidence"):
+    with pytest.raises(EmptyArmError, match=r"^t.csv, condition optimal: .* confidence"):
         analyse_path(as_csv(tmp_path / "t.csv", rows))
 
 
