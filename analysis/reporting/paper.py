@@ -24,8 +24,8 @@ _MOTION_ONLY = (
     "compared with times that Goalguess recorded."
 )
 _AS_GIVEN = (
-    "Times are as the table gives them; whether a lead-in is counted in is not known, nor so "
-    "whether they can be compared with the paper's mean times of 15.67 s and 18.22 s."
+    "Times are as the table gives them; whether a lead-in is counted in is not known, so they "
+    "may not be comparable with the paper's mean times of 15.67 s and 18.22 s."
 )
 
 
