@@ -10,10 +10,10 @@ def holm(p: Sequence[float | None]) -> tuple[float | None, ...]:
 
     A missing p is not counted as a hypothesis. Source: Holm (1979), step-down.
     """
-    from statsmodels.stats.multitest import multipletests
-
-    present = [each for each in p if each is not None]
-    if not present:
-        return tuple(p)
-    corrected = iter(multipletests(present, method="holm")[1].tolist())
-    return tuple(None if each is None else next(corrected) for each in p)
+    # not statsmodels' own, which collects garbage: longer than the rest of a small report
+    rising = sorted((each, place) for place, each in enumerate(p) if each is not None)
+    corrected, largest = list(p), 0.0
+    for rank, (each, place) in enumerate(rising):
+        largest = max(largest, min(1.0, (len(rising) - rank) * each))
+        corrected[place] = largest
+    return tuple(corrected)
