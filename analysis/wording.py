@@ -81,3 +81,8 @@ def words_of_test(test: str) -> str:
     """Write the name of a test in words: two-way AUC for two_way_auc."""
     words = test.replace("two_way", "two-way").replace("_", " ")
     return words.replace("auc", "AUC")
+
+
+def capital(text: str) -> str:
+    """Write a text as the beginning of a sentence."""
+    return text[:1].upper() + text[1:]

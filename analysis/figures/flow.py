@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
+from ..wording import capital
 from .drawn import Drawn
 from .style import INK, Labels, panel
-from .text import SMALL_POINTS, capital, in_sentence, wrapped
+from .text import SMALL_POINTS, in_sentence, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -32,11 +32,6 @@ def in_sentence(label: str) -> str:
     return wrapped(label, _SENTENCE_POINTS, lines=1)
 
 
-def capital(label: str) -> str:
-    """Write a label as the beginning of a line."""
-    return label[:1].upper() + label[1:]
-
-
 @cache
 def _width(line: str, size: float, *, bold: bool) -> float:
     """Return how many points wide a line is."""

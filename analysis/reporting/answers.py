@@ -10,7 +10,7 @@ from ..conclusions import EXPECTED, Conclusion, Direction
 from ..methods import Comparison
 from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
-from ..wording import format_alpha, format_p, percent
+from ..wording import capital, format_alpha, format_p, percent
 from .document import Finding, Paragraph, Part
 from .effects import beyond, effect_of, estimate, interval, statement
 
@@ -52,11 +52,6 @@ def answers(
         for each in conclusions
     )
     return [*findings, *map(_together, several)]
-
-
-def capital(text: str) -> str:
-    """Write a text as the beginning of a sentence."""
-    return text[:1].upper() + text[1:]
 
 
 def means(compared: Comparison, arms: Arms) -> str:

@@ -8,8 +8,8 @@ from ..data_notices import NO_RESULT
 from ..evidence import Evidence
 from ..plan import Plan
 from ..results import Results
-from ..wording import chi_square_apa, format_p, mann_whitney_apa
-from .answers import WORDS, capital, means
+from ..wording import capital, chi_square_apa, format_p, mann_whitney_apa
+from .answers import WORDS, means
 from .effects import bracketed, statement
 
 

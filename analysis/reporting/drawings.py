@@ -14,8 +14,8 @@ from ..methods import Comparison
 from ..statistics.mixed_model import CrossedLogistic
 from ..statistics.result import TestResult
 from ..statistics.survival import Incidence
-from ..wording import percent
-from .answers import WORDS, capital
+from ..wording import capital, percent
+from .answers import WORDS
 from .method_tables import PRIMARY, in_shares, method_names
 
 TIME, CONFIDENCE = "prediction_time", "confidence"

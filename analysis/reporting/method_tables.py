@@ -9,8 +9,8 @@ from ..methods import INDEPENDENT, Comparison, methods_of
 from ..statistics.mixed_model import CrossedLogistic
 from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
-from ..wording import format_p
-from .answers import WORDS, capital
+from ..wording import capital, format_p
+from .answers import WORDS
 from .document import NOTHING, Grid, Heading, Items, Part, with_reason
 from .effects import beyond, bracketed, estimate_cell, interval, statistic
 

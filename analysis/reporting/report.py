@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from ..results import Results
 from ..statistics.codes import NO_SCENARIO_SHARED
-from .answers import answers, capital
+from ..wording import capital
+from .answers import answers
 from .apa import apa_sentences
 from .design_tables import chance_parts, discrimination_parts, likeness_parts, stops_parts
 from .document import Heading, Items, Paragraph, Part, Picture
