@@ -8,7 +8,7 @@ from sqlalchemy.exc import DBAPIError
 from app.database import sqlite_engine
 from app.errors import DatabaseMismatch
 
-HEAD = "0002"
+HEAD = "0003"
 """Revision that this version works with; a test holds it equal to the newest migration."""
 
 

@@ -18,6 +18,7 @@ from sqlalchemy import (
     Table,
     TypeDecorator,
     UniqueConstraint,
+    true,
 )
 
 
@@ -85,8 +86,10 @@ participants = Table(
     Column("pixel_ratio", Float),
     Column("refresh_rate_hz", Float),
     Column("pointer_type", String),
+    Column("pilot_before", Boolean),
 )
 """`arrival` is the consent form's nonce: sent twice, it is still one participant.
+`pilot_before`: the same recruiter's id had been a pilot when this participant consented.
 
 Of somebody who withdrew only the row itself stays, emptied: the tombstone.
 """
@@ -110,7 +113,9 @@ sessions = Table(
     _participant(nullable=False, index=True),
     Column("current", Boolean, nullable=False),
     Column("began_at", UtcTime, nullable=False),
+    Column("proven", Boolean, nullable=False, server_default=true()),
 )
+"""`proven`: the browser has shown that it is the participant's, see `app.sessions`."""
 
 demographics = Table(
     "demographics",
@@ -135,9 +140,14 @@ places = Table(
     _participant(unique=True),
     Column("dealt_at", UtcTime),
     Column("played_at", UtcTime),
+    Column("ticket", String),
     Index("ix_places_free", "stream", "dealt_at", "number"),
 )
-"""Dealt in the order of `number` within a stream; one given back has no `dealt_at` again."""
+"""Dealt in the order of `number` within a stream; one given back has no `dealt_at` again.
+
+`ticket` is drawn at random each time the place is dealt; those dealt before there were any have
+none.
+"""
 
 trials = Table(
     "trials",
@@ -166,10 +176,20 @@ trials = Table(
     Column("guess_latency_ms", Float),
     Column("confidence_latency_ms", Float),
     Column("pointer_moved", Boolean),
+    Column("press_ms", Float),
+    Column("last_frame_ms", Float),
+    Column("frame_interval_ms", Float),
+    Column("played_waited_ms", Float),
+    Column("stopped_waited_ms", Float),
+    Column("times_clamped", Boolean),
 )
 """A row begins with the first frame played, gets its stop, then its answer; nothing is replaced.
 
 `position_ms` is the motion time known to have been seen, from which a broken-off trial goes on.
+`press_ms` and `last_frame_ms` are positions on the same line: of the press on Stop as the page sent
+it, and of the last frame it had drawn; `stop_time_ms` is derived of both. `..._waited_ms` is how
+long the page kept a message before it could send it. `times_clamped`: a time that the page sent
+could not be, and is stored at the bound.
 """
 
 events = Table(
@@ -200,3 +220,6 @@ tallies = Table(
     Column("count", Integer, nullable=False),
 )
 """Anonymous counts, such as arrivals that gave no consent."""
+
+declined = Table("declined", metadata, Column("arrival", String, primary_key=True))
+"""Consent forms, by their nonce, that were answered with no: sent twice, it is counted once."""

@@ -98,7 +98,7 @@ def test_a_failing_commit_acknowledges_nothing(bare):
         add("lost")(connection)
         orphan = {"token_hash": "x", "participant_id": 99, "current": True}
         connection.execute(
-            text("INSERT INTO sessions VALUES (:token_hash, :participant_id, :current, '2026')"),
+            text("INSERT INTO sessions VALUES (:token_hash, :participant_id, :current, '2026', 1)"),
             orphan,
         )
 
