@@ -67,7 +67,7 @@ def test_a_database_of_the_first_version_is_upgraded_and_keeps_its_rows(tmp_path
     assert len(before) == 2
     kept = len(before[0])
     assert [row[:kept] for row in after] == before
-    assert {value for row in after for value in row[kept:]} == {None}  # what came later is not known
+    assert {value for row in after for value in row[kept:]} == {None}  # not known
 
 
 def test_a_database_of_an_unknown_version_is_refused_and_not_touched(tmp_path):
