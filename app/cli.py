@@ -8,6 +8,7 @@ import typer
 
 from analysis import commands as analysis_commands
 from app.bots.kinds import DEFAULT_MIX, Kind, read_mix
+from app.serve_cli import commands as serve_commands
 from policies import commands as policies_commands
 
 commands = typer.Typer(
@@ -17,44 +18,9 @@ commands = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+commands.add_typer(serve_commands)
 commands.add_typer(policies_commands)
 commands.add_typer(analysis_commands)
-
-
-@commands.command()
-def serve(
-    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0 takes a free one.")] = 8000,
-) -> None:
-    """Serve the study to participants; answers go to the file GOALGUESS_DATABASE_URL names.
-
-    Example: GOALGUESS_DATABASE_URL=sqlite:///study.sqlite goalguess serve --port 8000
-    """
-    import socket
-
-    import uvicorn
-
-    from app.main import create_app
-    from app.opening import open_database
-    from app.settings import load_settings
-    from app.study import load_study
-
-    settings = load_settings()
-    # What can go wrong is tried first, so that it is told in one line: the file and the port.
-    open_database(load_study(settings)).close()
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    with socket.create_server((host, port), family=family) as listener:
-        server = uvicorn.Server(
-            uvicorn.Config(create_app(settings), log_level="warning", ws="none")
-        )
-        typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
-        shown = f"[{host}]" if ":" in host else host
-        address = f"http://{shown}:{listener.getsockname()[1]}/"
-        typer.echo(f"The study is at {address}")
-        typer.echo(f"To try it without leaving data: {address}?preview=1")
-        for gap in settings.gaps:
-            typer.echo(f"Not set: {gap}", err=True)
-        server.run(sockets=[listener])
 
 
 @commands.command()

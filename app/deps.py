@@ -7,11 +7,14 @@ from typing import Any
 from fastapi import Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from starlette.responses import Response
+from starlette.types import Receive, Scope, Send
 
 from app.database import Database
-from app.errors import WrongStep
+from app.errors import TooMany, WrongStep
+from app.limits import Moderation
 from app.pages import Pages
 from app.repository import Record
+from app.root_path import root_path
 from app.sessions import participant_of
 from app.settings import Ending
 from app.steps import ENDINGS, Step, may_withdraw
@@ -48,6 +51,7 @@ class Services:
     study: Study
     database: Database
     pages: Pages
+    consents: Moderation
 
 
 def services(request: Request) -> Services:
@@ -70,6 +74,13 @@ async def participant_at(request: Request, *steps: Step) -> Record:
     if participant.step not in steps:
         raise AtAnotherStep(Step(participant.step))
     return participant
+
+
+async def in_moderation(request: Request) -> None:
+    """Let somebody begin; TooMany when many have just begun from their network."""
+    wait_s = services(request).consents.wait_s(request.client.host if request.client else None)
+    if wait_s:
+        raise TooMany(wait_s)
 
 
 def page(
@@ -99,19 +110,42 @@ def recruiter(request: Request, ending: Ending) -> dict[str, str | None]:
     return {"code": code, "url": settings.return_url.replace("{code}", code) if code else None}
 
 
-def see(path: str, token: str | None = None, secure: bool = False) -> RedirectResponse:
+class _Elsewhere(RedirectResponse):
+    """A redirect to a page of ours, under whatever path the study has on its host."""
+
+    def __init__(self, path: str, token: str | None, secure: bool) -> None:
+        super().__init__(path, 303, headers={"Cache-Control": "no-store"})
+        self.path, self.token, self.secure = path, token, secure
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        root = root_path(scope)
+        self.headers["location"] = root + self.path
+        if self.token:
+            self.set_cookie(
+                COOKIE,
+                self.token,
+                max_age=COOKIE_SECONDS,
+                path=root or "/",
+                httponly=True,
+                samesite="lax",
+                secure=self.secure,
+            )
+        await super().__call__(scope, receive, send)
+
+
+def see(path: str, token: str | None = None, secure: bool = False) -> Response:
     """Send the browser to a page with GET; with a token, begin a session there."""
-    response = RedirectResponse(path, 303, headers={"Cache-Control": "no-store"})
-    if token:
-        response.set_cookie(
-            COOKIE,
-            token,
-            max_age=COOKIE_SECONDS,
-            httponly=True,
-            samesite="lax",
-            secure=secure,
-        )
-    return response
+    return _Elsewhere(path, token, secure)
+
+
+def forget_browser(request: Request, response: Response) -> None:
+    """Let a reply end the session, and clear what the browser has stored."""
+    root = root_path(request.scope)
+    if root:
+        # The host is not ours alone: what other sites under it have stored stays.
+        response.delete_cookie(COOKIE, path=root)
+    else:
+        response.headers["Clear-Site-Data"] = '"cookies", "storage"'
 
 
 def as_json(content: Any, status: int = 200) -> Response:

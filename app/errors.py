@@ -9,6 +9,8 @@ AppError (carries an HTTP status and a code; one handler renders it as page or J
 ├── InvalidInput       422  what was sent cannot be: which field, expected, came
 ├── TooLarge           413  the request is larger than any page of ours sends
 ├── ForeignOrigin      403  a POST that did not come from our own pages
+│   └── HostChanged         ... as far as can be seen, because a proxy changed the header Host
+├── TooMany            429  more began from one network than is taken in a minute
 ├── DatabaseMismatch   500  a database that this version must not open
 └── DealingFailed      500  no balanced list could be drawn from the pool
 """
@@ -90,6 +92,30 @@ class ForeignOrigin(AppError):
 
     status = 403
     code = "foreign_origin"
+
+
+class HostChanged(ForeignOrigin):
+    """A POST of our own page, as it seems, whose header Host a proxy has changed."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "The proxy in front of the study changes the address that browsers ask for: it must "
+            "pass the header Host on unchanged, with its port. Please tell the researchers."
+        )
+
+
+class TooMany(AppError):
+    """More began from one network than is taken in a minute; `wait_s` until the next may."""
+
+    status = 429
+    code = "too_many"
+
+    def __init__(self, wait_s: int) -> None:
+        super().__init__(
+            "Many people have just begun from your network. Nothing is wrong with yours: please "
+            f"wait {wait_s} seconds, go back to the page before, and press the button again."
+        )
+        self.wait_s = wait_s
 
 
 class DatabaseMismatch(AppError):

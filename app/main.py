@@ -6,13 +6,16 @@ from contextlib import asynccontextmanager
 
 from fastapi import FastAPI, Request
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
-from app import VERSION, participant, trials_api
+from app import VERSION, health, participant, trials_api
 from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see
-from app.errors import AppError, Moved, StudyClosed, WrongStep
+from app.errors import AppError, Moved, StudyClosed, TooMany, WrongStep
+from app.limits import Moderation
 from app.opening import open_database
 from app.pages import Pages, static_app
+from app.root_path import UnderRootPath, own_path, require_apart
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
 from app.settings import Settings
 from app.study import load_study
@@ -28,7 +31,10 @@ def create_app(settings: Settings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         database = open_database(study)
-        app.state.services = Services(study, database, pages)
+        consents = Moderation(settings.consents_per_minute)
+        app.state.services = Services(study, database, pages, consents)
+        # Its lines would hold the invitation links, and with them people's ids.
+        logging.getLogger("uvicorn.access").disabled = True
         yield
         database.close()
 
@@ -39,14 +45,18 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url=None,
+        redirect_slashes=False,  # it would redirect to whatever host a request names
     )
-    app.router.routes.extend(trials_api.routes)
+    app.router.routes.extend([*trials_api.routes, *health.routes])
     app.include_router(participant.router)
     app.mount(pages.static_root, static_app(), name="static")
+    require_apart(settings.root_path, [*app.routes, *participant.router.routes])
     app.add_middleware(OwnPagesOnly, refuse=render_error)
     app.add_middleware(SecurityHeaders)
+    app.add_middleware(UnderRootPath, root_path=settings.root_path)
     app.add_exception_handler(AppError, render_error)
     app.add_exception_handler(HTTPException, _render_http_error)
+    app.add_exception_handler(ClientDisconnect, _nobody_there)
     app.add_exception_handler(Exception, _render_crash)
     return app
 
@@ -55,7 +65,7 @@ def render_error(request: Request, error: Exception) -> Response:
     """The one place where errors become replies: a page, or JSON for the trial page."""
     if not isinstance(error, AppError):
         raise error
-    if request.url.path.startswith("/api/"):
+    if own_path(request.scope).startswith("/api/"):
         content = {"error": {"code": error.code, "message": str(error)}}
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
@@ -65,7 +75,15 @@ def render_error(request: Request, error: Exception) -> Response:
     if isinstance(error, StudyClosed):
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
     context = {"status": error.status, "message": str(error)}
-    return page(request, "error.html", context, status=error.status)
+    reply = page(request, "error.html", context, status=error.status)
+    if isinstance(error, TooMany):
+        reply.headers["Retry-After"] = str(error.wait_s)
+    return reply
+
+
+def _nobody_there(_request: Request, _error: Exception) -> Response:
+    """Whoever sent the request has gone before it was complete: it is no failure of ours."""
+    return Response(status_code=408)
 
 
 def _render_http_error(request: Request, error: Exception) -> Response:
@@ -76,7 +94,7 @@ def _render_http_error(request: Request, error: Exception) -> Response:
 
 
 def _render_crash(request: Request, error: Exception) -> Response:
-    log.exception("%s %s failed", request.method, request.url.path, exc_info=error)
+    log.exception("%s %s failed", request.method, own_path(request.scope), exc_info=error)
     reply = render_error(request, AppError("Something went wrong on our side. Please try again."))
     reply.headers.update(HEADERS)
     return reply

@@ -26,6 +26,7 @@ class Pages:
     """Renders templates for one study; static addresses carry the hash of all static files."""
 
     def __init__(self, study: Study) -> None:
+        self._root = study.settings.root_path
         self.static_root = f"/static/{_digest(resources('static'))}"
         self._templates = Environment(
             loader=FileSystemLoader(resources("templates")),
@@ -35,8 +36,14 @@ class Pages:
             lstrip_blocks=True,
         )
         self._templates.globals.update(
-            study=study, static_url=lambda name: f"{self.static_root}/{name}"
+            study=study,
+            url=self.url,
+            static_url=lambda name: self.url(f"{self.static_root}/{name}"),
         )
+
+    def url(self, path: str) -> str:
+        """The address of a page of ours, under the study's path on its host."""
+        return self._root + path
 
     def render(
         self,

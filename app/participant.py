@@ -1,16 +1,21 @@
 """The participant's pages: parse, call, reply."""
 
 import secrets
+from collections.abc import Callable
 from contextlib import suppress
+from typing import Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Depends, Request
 from fastapi.responses import Response
+from fastapi.routing import APIRoute
 
 from app import answering, arrival, enrolment
 from app.answering import TrialScore
 from app.arrival import Link
 from app.deps import (
     PATHS,
+    forget_browser,
+    in_moderation,
     page,
     participant_at,
     recruiter,
@@ -29,7 +34,17 @@ from app.questions import ABOUT_YOU, CONTROL, answers
 from app.steps import ENDINGS, Step, may_withdraw
 from app.study import Study
 
-router = APIRouter(include_in_schema=False)
+
+class _Page(APIRoute):
+    """A page that also says, without its content, how it would answer."""
+
+    def __init__(self, path: str, endpoint: Callable[..., Any], **options: Any) -> None:
+        super().__init__(path, endpoint, **options)
+        if self.methods and "GET" in self.methods:
+            self.methods.add("HEAD")
+
+
+router = APIRouter(include_in_schema=False, route_class=_Page)
 
 BEST_SCORE_OF_TRIAL = 10
 
@@ -53,7 +68,7 @@ async def arrive(request: Request) -> Response:
     return see(path, token, secure=request.url.scheme == "https")
 
 
-@router.post("/consent")
+@router.post("/consent", dependencies=[Depends(in_moderation)])
 async def consent(request: Request) -> Response:
     """Yes makes the participant; no is only counted."""
     form = await _form(request)
@@ -196,7 +211,7 @@ async def withdraw(request: Request) -> Response:
         await at.database.write(lambda c: enrolment.withdraw(c, at.study, token))
         at.database.forget_deleted()
     response = see("/withdrawn")
-    response.headers["Clear-Site-Data"] = '"cookies", "storage"'
+    forget_browser(request, response)
     return response
 
 

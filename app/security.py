@@ -1,5 +1,7 @@
 """What every request must pass and every reply carries, as plain ASGI middleware."""
 
+import logging
+import re
 from collections.abc import Callable
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -7,7 +9,9 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.errors import AppError, ForeignOrigin, TooLarge
+from app.errors import AppError, ForeignOrigin, HostChanged, TooLarge
+
+log = logging.getLogger("goalguess")
 
 LARGEST_BODY = 64 * 1024
 
@@ -47,6 +51,7 @@ class OwnPagesOnly:
     def __init__(self, app: ASGIApp, refuse: Callable[[Request, AppError], Response]) -> None:
         self.app = app
         self.refuse = refuse
+        self.warned = False
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Handle one request."""
@@ -58,6 +63,9 @@ class OwnPagesOnly:
             _require_own_origin(headers)
             _require_size(headers.get("content-length", "0"))
         except AppError as error:
+            if isinstance(error, HostChanged) and not self.warned:
+                self.warned = True
+                log.warning("Requests are refused. %s", error)
             await self.refuse(Request(scope), error)(scope, receive, send)
             return
         received = 0
@@ -73,15 +81,21 @@ class OwnPagesOnly:
 
 
 def _require_size(size: str) -> None:
-    if not size.isdigit() or int(size) > LARGEST_BODY:
-        raise TooLarge(f"Expected at most {LARGEST_BODY} bytes.")
+    # More digits than a body can need are not even read as a number.
+    if not re.fullmatch("[0-9]{1,9}", size) or int(size) > LARGEST_BODY:
+        raise TooLarge(f"Expected a request that says its size, at most {LARGEST_BODY} bytes.")
 
 
 def _require_own_origin(headers: Headers) -> None:
-    origin = headers.get("origin")
-    if origin is None:
-        own = headers.get("sec-fetch-site") == "same-origin"
-    else:
-        own = origin.partition("://")[2] == headers.get("host")
-    if not own:
-        raise ForeignOrigin("This request did not come from a page of the study.")
+    origin, host = headers.get("origin"), headers.get("host", "")
+    vouched = headers.get("sec-fetch-site") == "same-origin"
+    sender = None if origin is None else origin.partition("://")[2]
+    if vouched if sender is None else sender == host:
+        return
+    if sender and (vouched or _without_port(sender) == _without_port(host)):
+        raise HostChanged
+    raise ForeignOrigin("This request did not come from a page of the study.")
+
+
+def _without_port(host: str) -> str:
+    return re.sub(r":[0-9]*$", "", host)

@@ -4,8 +4,10 @@ import os
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
+from urllib.parse import urlsplit
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
+from pydantic_core import PydanticCustomError
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 from sqlalchemy.engine import make_url
 from sqlalchemy.exc import ArgumentError
@@ -13,6 +15,8 @@ from sqlalchemy.exc import ArgumentError
 from app.errors import InvalidInput
 
 PREFIX = "GOALGUESS_"
+
+CODES_EXAMPLE = '{"completed": "C1A2B3"}'
 
 Ending = Literal["completed", "no_consent", "screened_out", "failed", "withdrawn"]
 
@@ -62,6 +66,39 @@ class Settings(BaseSettings):
         "screened_out, failed, withdrawn. An ending without a code shows none.",
     )
 
+    root_path: Annotated[str, Field(pattern=r"^(/[A-Za-z0-9._~-]+)*$")] = Field(
+        "",
+        description="Path under which a proxy shows the study, like /study; whether the proxy "
+        "passes it on or takes it off makes no difference.",
+    )
+    consents_per_minute: Annotated[int, Field(ge=1, le=100_000)] = Field(
+        60,
+        description="How many may begin in a minute from one network address; more are asked to "
+        "wait. This machine's own address has no limit.",
+    )
+    keep_alive_s: Annotated[int, Field(ge=1, le=3600)] = Field(
+        65,
+        description="How long an unused connection stays open, s; longer than the proxy keeps its "
+        "own.",
+    )
+
+    @field_validator("return_url")
+    @classmethod
+    def _require_web_address(cls, value: str) -> str:
+        try:
+            address = urlsplit(value)
+        except ValueError:
+            address = urlsplit("")
+        if (
+            address.scheme not in ("http", "https")
+            or not address.hostname
+            or not value.isprintable()
+        ):
+            raise PydanticCustomError(
+                "web_address", "expected an address that begins with https:// or http:// and a host"
+            )
+        return value
+
     @cached_property
     def database_file(self) -> Path:
         """The SQLite file; InvalidInput for any other kind of database."""
@@ -103,9 +140,12 @@ def load_settings() -> Settings:
     try:
         return Settings()
     except SettingsError as error:
-        raise InvalidInput(f"{PREFIX}CODES: expected JSON, {error}") from error
+        raise InvalidInput(f"{PREFIX}CODES: expected JSON like {CODES_EXAMPLE}") from error
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         name, *key = (str(part) for part in first["loc"])
         where = f"{PREFIX}{name.upper()}" + (f", {key[0]!r}" if key else "")
-        raise InvalidInput(f"{where}: {first['msg']}, came {str(first['input'])!r}") from error
+        example = f"; write it like {CODES_EXAMPLE}" if name == "codes" else ""
+        raise InvalidInput(
+            f"{where}: {first['msg']}, came {str(first['input'])!r}{example}"
+        ) from error

@@ -4,6 +4,9 @@ const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 15000;
 const PATIENCE_MS = 15000; // for one answer
 
+/** Where a path of the study is on its host, which it may share with others. */
+export const at = (path) => (document.body.dataset.root ?? "") + path;
+
 /** The server's no, which trying again cannot change. */
 export class Refused extends Error {
   constructor({ status, body }) {
@@ -21,7 +24,7 @@ export async function request(path, message) {
     body: JSON.stringify(message),
     keepalive: true, // also when the page is left meanwhile
   };
-  const response = await fetch(path, { ...posting, signal: AbortSignal.timeout(PATIENCE_MS) });
+  const response = await fetch(at(path), { ...posting, signal: AbortSignal.timeout(PATIENCE_MS) });
   return { ok: response.ok, status: response.status, body: await response.json().catch(() => null) };
 }
 

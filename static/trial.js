@@ -1,6 +1,6 @@
 // Runs the ten rounds in one page: asks the server where we are, plays, asks, saves, goes on.
 
-import { patiently } from "./api.js";
+import { at, patiently } from "./api.js";
 import { Outbox } from "./outbox.js";
 import { Player } from "./player.js";
 import { Questions } from "./questions.js";
@@ -64,7 +64,7 @@ async function start() {
 }
 
 function show(state) {
-  if (!state.trial) return location.assign(state.next ?? "/");
+  if (!state.trial) return location.assign(at(state.next ?? "/"));
   trial = state.trial;
   byId("round-index").textContent = trial.index;
   byId("progress").value = trial.index - 1;

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import TracebackType
+from typing import IO
 
 COMPLETE = {
     "researchers": "The Goalguess team",
@@ -18,9 +19,10 @@ COMPLETE = {
 class ServerProcess:
     """A server on a database file; once started, it keeps its port over every restart."""
 
-    def __init__(self, database: Path) -> None:
-        variables = {"database_url": f"sqlite:///{database}", **COMPLETE}
-        named = {f"GOALGUESS_{name.upper()}": value for name, value in variables.items()}
+    def __init__(self, database: Path, log: IO[str] | None = None, **settings: object) -> None:
+        variables = {"database_url": f"sqlite:///{database}", **COMPLETE, **settings}
+        named = {f"GOALGUESS_{name.upper()}": str(value) for name, value in variables.items()}
+        self._log = log
         self._environment = {**os.environ, **named}
         self.port = 0
 
@@ -34,8 +36,7 @@ class ServerProcess:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        self._process.terminate()
-        self._ended()
+        self.end()
 
     @property
     def url(self) -> str:
@@ -51,11 +52,16 @@ class ServerProcess:
         """Serve, and return when requests are answered."""
         command = [sys.executable, "-u", "-m", "app.cli", "serve", "--port", str(self.port)]
         self._process = subprocess.Popen(
-            command, env=self._environment, stdout=subprocess.PIPE, text=True
+            command, env=self._environment, stdout=subprocess.PIPE, stderr=self._log, text=True
         )
         assert self._process.stdout
         announced = (re.search(r"http://[^:]+:(\d+)/", line) for line in self._process.stdout)
         self.port = next(int(found[1]) for found in announced if found)
+
+    def end(self) -> None:
+        """End it as an operator does; returns when it has finished."""
+        self._process.terminate()
+        self._ended()
 
     def kill(self) -> None:
         """End it as a crash does: nothing is finished, nothing is said."""

@@ -11,11 +11,12 @@ from httpx2 import AsyncClient, Response, TransportError
 from pydantic import BaseModel
 
 from app.bots.forms import Form, read_form
-from app.errors import AppError
+from app.errors import AppError, TooMany
 
 FIRST_WAIT_S = 0.1
 LONGEST_WAIT_S = 2.0
 PATIENCE_S = 60.0
+TOO_MANY = TooMany.status
 
 
 class NoServer(AppError):
@@ -61,18 +62,21 @@ class Browser:
 
     def __init__(self, client: AsyncClient) -> None:
         self._client = client
+        home = client.base_url
+        self._root_path = home.path.rstrip("/")
         self._headers = {
-            "origin": str(client.base_url).rstrip("/"),
+            "origin": f"{home.scheme}://{home.netloc.decode('ascii')}",
             "user-agent": "goalguess simulate",
         }
 
     async def open(self, address: str) -> Page:
         """A page, wherever the server leads."""
-        return _page(await self._patiently("GET", address))
+        return self._page(await self._patiently("GET", address))
 
     async def submit(self, form: Form, values: Mapping[str, str]) -> Page:
         """Send a form with its hidden fields; the page that follows."""
-        return _page(await self._patiently("POST", form.action, data={**form.hidden, **values}))
+        path = form.action.removeprefix(self._root_path)
+        return self._page(await self._patiently("POST", path, data={**form.hidden, **values}))
 
     async def fetch(self, path: str) -> dict[str, Any]:
         """What a page's script asks for."""
@@ -87,9 +91,10 @@ class Browser:
         while True:
             try:
                 reply = await self._client.request(method, path, headers=self._headers, **request)
-                if reply.status_code < 500:
+                if reply.status_code < 500 and reply.status_code != TOO_MANY:
                     return reply
                 trouble = f"it answers {reply.status_code}"
+                wait = max(wait, float(reply.headers.get("retry-after", 0)))
             except TransportError as error:
                 trouble = f"{error} ({type(error).__name__})"
             if waited >= PATIENCE_S:
@@ -98,12 +103,12 @@ class Browser:
             waited += wait
             wait = min(2 * wait, LONGEST_WAIT_S)
 
-
-def _page(reply: Response) -> Page:
-    # 409 is a page for people: the study is closed, or went on in another browser.
-    if reply.status_code not in (200, 409):
-        raise Refused(reply)
-    return Page(reply.url.raw_path.decode("ascii"), reply.status_code == 200, reply.text)
+    def _page(self, reply: Response) -> Page:
+        # 409 is a page for people: the study is closed, or went on in another browser.
+        if reply.status_code not in (200, 409):
+            raise Refused(reply)
+        address = reply.url.raw_path.decode("ascii").removeprefix(self._root_path)
+        return Page(address, reply.status_code == 200, reply.text)
 
 
 def _state(reply: Response) -> dict[str, Any]:

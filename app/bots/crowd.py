@@ -119,8 +119,7 @@ async def _server_at(url: str) -> AsyncIterator[NewClient]:
 @asynccontextmanager
 async def _own_application(settings: Settings) -> AsyncIterator[NewClient]:
     app = create_app(settings)
+    address = f"http://simulated{settings.root_path}"
     async with app.router.lifespan_context(app):
         transport = ASGITransport(app=app)
-        yield lambda: AsyncClient(
-            transport=transport, base_url="http://simulated", follow_redirects=True
-        )
+        yield lambda: AsyncClient(transport=transport, base_url=address, follow_redirects=True)

@@ -3,12 +3,13 @@
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sized
 from contextlib import contextmanager
 
 import uvicorn
 
 from app.main import create_app
+from app.serving import StudyConfig
 from app.settings import Settings
 
 
@@ -17,21 +18,24 @@ class Server:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._port = free_port()
-        self.url = f"http://127.0.0.1:{self._port}"
+        self.port = free_port()
+        self.url = f"http://127.0.0.1:{self.port}"
 
     def start(self) -> None:
         """Serve; returns when requests are answered."""
-        config = uvicorn.Config(
-            create_app(self._settings), port=self._port, log_level="error", ws="none"
-        )
-        self._server = uvicorn.Server(config)
-        self._thread = threading.Thread(target=self._server.run)
+        listener = socket.create_server(("127.0.0.1", self.port))
+        self._server = uvicorn.Server(StudyConfig(create_app(self._settings), self._settings))
+        self._thread = threading.Thread(target=self._server.run, args=([listener],))
         self._thread.start()
         while not self._server.started:
             if not self._thread.is_alive():
                 raise RuntimeError("the server did not start")
             time.sleep(0.01)
+
+    @property
+    def connections(self) -> Sized:
+        """Who is connected now."""
+        return self._server.server_state.connections
 
     def stop(self) -> None:
         """Close the database and the port; one that stands still already stays so."""
