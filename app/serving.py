@@ -7,7 +7,11 @@ from typing import Any
 import uvicorn
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp
-from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
+from uvicorn.protocols.http.httptools_impl import (
+    STATUS_LINE,
+    HttpToolsProtocol,
+    RequestResponseCycle,
+)
 
 from app.security import HEADERS, LARGEST_BODY
 from app.settings import Settings
@@ -64,6 +68,7 @@ class BoundedProtocol(HttpToolsProtocol):
         self._received = 0  # bytes of the request that is arriving
         self._in_head = True
         self._deadline: asyncio.TimerHandle | None = None  # for the rest of it
+        self._answering: RequestResponseCycle | None = None
         self._unread: asyncio.TimerHandle | None = None  # runs while nobody reads our reply
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
@@ -80,6 +85,8 @@ class BoundedProtocol(HttpToolsProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End it, and whatever waits for it."""
         super().connection_lost(exc)
+        # uvicorn tells the last request's answer only, which may still wait for an earlier one.
+        self._say_no_more(self._answering)
         for timer in (self._deadline, self._unread):
             if timer:
                 timer.cancel()
@@ -137,6 +144,16 @@ class BoundedProtocol(HttpToolsProtocol):
             self._unread = None
         super().resume_writing()
 
+    def _start_asgi_task(self, cycle: RequestResponseCycle, app: Any) -> None:
+        self._answering = cycle
+        super()._start_asgi_task(cycle, app)
+
+    def _say_no_more(self, cycle: RequestResponseCycle | None) -> None:
+        """Let the app hear that the rest will not come, and drop what it says."""
+        if cycle and not cycle.response_complete:
+            cycle.disconnected = True
+            cycle.message_event.set()
+
     def _expect_within(self, seconds: float) -> None:
         if self._deadline:
             self._deadline.cancel()
@@ -149,10 +166,7 @@ class BoundedProtocol(HttpToolsProtocol):
             due = self._received > 0 and not answering
         else:
             due = answering and not self.cycle.response_started and not self.pipeline
-        if answering:
-            # The app hears that the rest will not come, and says nothing more.
-            self.cycle.disconnected = True
-            self.cycle.message_event.set()
+        self._say_no_more(self.cycle)
         if due:
             body = words.encode()
             fields = {**_FIELDS, "content-length": str(len(body)), "connection": "close"}
