@@ -3,6 +3,7 @@
 import typer
 
 from .cli import commands
+from .command_line import run_commands
 
 alone = typer.Typer(no_args_is_help=True, add_completion=False)
 alone.add_typer(commands)
@@ -14,4 +15,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    alone(prog_name="python -m analysis")
+    run_commands(alone, "python -m analysis")

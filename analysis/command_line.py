@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -10,13 +12,44 @@ import typer
 from .errors import AnalysisError
 
 
+def run_commands(commands: typer.Typer, name: str) -> None:
+    """Run a command line; what the caller can mend is one line on stderr and exit code 2."""
+    try:
+        sys.exit(commands(prog_name=name, standalone_mode=False))
+    except typer.TyperException as wrong_use:
+        line = _wrong_use(wrong_use)
+    except (AnalysisError, OSError) as error:
+        line = one_line(error)
+    if line:
+        typer.echo(f"goalguess: {line}", err=True)
+    sys.exit(2)
+
+
+def one_line(error: Exception) -> str:
+    """What an error says, in one line: the system's ones as `file: reason`, without its codes."""
+    text = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        file = error.filename2 or error.filename
+        text = f"{file}: {error.strerror}" if file else error.strerror
+    return " ".join(re.sub(r"\[Errno -?\d+\] ", "", text).split())
+
+
+def _wrong_use(error: typer.TyperException) -> str:
+    """Typer's message and where to read on; nothing where it has shown the help itself."""
+    message = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    if not message or context is None:
+        return message
+    return f"{message} (see {context.command_path} --help)"
+
+
 @contextmanager
 def one_line_errors() -> Iterator[None]:
     """Turn an error of ours into one line and exit code 2."""
     try:
         yield
     except AnalysisError as error:
-        typer.echo(f"goalguess: {' '.join(str(error).split())}", err=True)
+        typer.echo(f"goalguess: {one_line(error)}", err=True)
         raise typer.Exit(2) from error
 
 

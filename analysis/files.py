@@ -14,12 +14,17 @@ from .errors import AnalysisError
 def replacing(path: Path) -> Iterator[Path]:
     """Give a temporary path beside `path`, and rename it to `path` when the block succeeds.
 
-    When the block fails, the temporary file goes and an older `path` stays as it was.
+    When the block fails, the temporary file goes and an older `path` stays as it was; an OSError
+    about the temporary file names `path`.
     """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         yield temporary
         temporary.replace(path)
+    except OSError as error:
+        if error.filename == str(temporary):
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 

@@ -1,6 +1,5 @@
 """The command `goalguess`: the study's own commands beside those of policies and analysis."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -102,13 +101,9 @@ def main() -> None:
     """Run the command; whatever the user can mend is one line, never a traceback."""
     from analysis import AnalysisError
     from app.errors import AppError
-    from policies import PolicyError
+    from policies import PolicyError, run_commands
 
-    try:
-        commands()
-    except (AppError, AnalysisError, PolicyError, OSError) as error:
-        typer.echo(f"goalguess: {error}", err=True)
-        sys.exit(2)
+    run_commands(commands, "goalguess", (AppError, AnalysisError, PolicyError))
 
 
 if __name__ == "__main__":

@@ -49,6 +49,8 @@ def serve(
 
 def _listen(host: str, port: int) -> socket.socket:
     """A socket that takes connections; NoListener says what hinders it."""
+    if not host:
+        raise NoListener("--host: expected an address of this machine, came none; all are 0.0.0.0")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)

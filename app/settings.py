@@ -1,6 +1,7 @@
 """Settings, each read from a variable GOALGUESS_<NAME>."""
 
 import os
+import re
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Literal
@@ -66,7 +67,7 @@ class Settings(BaseSettings):
         "screened_out, failed, withdrawn. An ending without a code shows none.",
     )
 
-    root_path: Annotated[str, Field(pattern=r"^(/[A-Za-z0-9._~-]+)*$")] = Field(
+    root_path: str = Field(
         "",
         description="Path under which a proxy shows the study, like /study; whether the proxy "
         "passes it on or takes it off makes no difference.",
@@ -85,6 +86,8 @@ class Settings(BaseSettings):
     @field_validator("return_url")
     @classmethod
     def _require_web_address(cls, value: str) -> str:
+        if not value:
+            return value
         try:
             address = urlsplit(value)
         except ValueError:
@@ -96,6 +99,15 @@ class Settings(BaseSettings):
         ):
             raise PydanticCustomError(
                 "web_address", "expected an address that begins with https:// or http:// and a host"
+            )
+        return value
+
+    @field_validator("root_path")
+    @classmethod
+    def _require_path(cls, value: str) -> str:
+        if not re.fullmatch(r"(/[A-Za-z0-9._~-]+)*", value):
+            raise PydanticCustomError(
+                "path", "expected a path like /study, without a slash at its end"
             )
         return value
 

@@ -2,6 +2,7 @@ from .certificate import Certificate as Certificate
 from .certificate import certify as certify
 from .choices import first_decision as first_decision
 from .cli import commands as commands
+from .command_line import run_commands as run_commands
 from .errors import MazeError as MazeError
 from .errors import ModelError as ModelError
 from .errors import PolicyError as PolicyError

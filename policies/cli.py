@@ -94,8 +94,8 @@ def build(
     with one_clear_line():
         from policies.pool_build import build as build_pool
 
-        texts = build_pool(seed, progress=lambda doing: typer.echo(f"{doing} ...", err=True))
         to.mkdir(parents=True, exist_ok=True)
+        texts = build_pool(seed, progress=lambda doing: typer.echo(f"{doing} ...", err=True))
         write_whole({to / name: text for name, text in texts.items()})
         typer.echo(f"wrote {' and '.join(texts)} to {to}")
 
@@ -160,6 +160,8 @@ def sheet(
 
         if to.suffix not in FORMATS:
             raise StimulusError(f"expected a file ending in {', '.join(FORMATS)}; came {to}")
+        if not to.parent.is_dir():
+            raise StimulusError(f"{to}: expected a file in a folder that exists")
         typer.echo("drawing ...", err=True)
         write_whole({to: draw_sheet(to.suffix)})
         typer.echo(f"wrote {to}")

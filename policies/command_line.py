@@ -1,5 +1,7 @@
 """What all commands share: one clear line on bad input, files written whole or not at all."""
 
+import re
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,6 +12,38 @@ import typer
 from policies.errors import PolicyError
 
 
+def run_commands(commands: typer.Typer, name: str, refusals: tuple[type[Exception], ...]) -> None:
+    """Run a command line; what the caller can mend is one line on stderr and exit code 2."""
+    expected: tuple[type[Exception], ...] = (*refusals, OSError)
+    try:
+        sys.exit(commands(prog_name=name, standalone_mode=False))
+    except typer.TyperException as wrong_use:
+        line = _wrong_use(wrong_use)
+    except expected as error:
+        line = one_line(error)
+    if line:
+        typer.echo(f"goalguess: {line}", err=True)
+    sys.exit(2)
+
+
+def one_line(error: Exception) -> str:
+    """What an error says, in one line: the system's ones as `file: reason`, without its codes."""
+    text = str(error)
+    if isinstance(error, OSError) and error.strerror:
+        file = error.filename2 or error.filename
+        text = f"{file}: {error.strerror}" if file else error.strerror
+    return " ".join(re.sub(r"\[Errno -?\d+\] ", "", text).split())
+
+
+def _wrong_use(error: typer.TyperException) -> str:
+    """Typer's message and where to read on; nothing where it has shown the help itself."""
+    message = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    if not message or context is None:
+        return message
+    return f"{message} (see {context.command_path} --help)"
+
+
 @contextmanager
 def one_clear_line() -> Iterator[None]:
     """Turn what the caller can mend into one line on stderr and exit code 2."""
@@ -18,21 +52,34 @@ def one_clear_line() -> Iterator[None]:
     except BrokenPipeError:  # the reader of our output has left; typer ends quietly
         raise
     except (PolicyError, OSError) as error:
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(f"goalguess: {one_line(error)}", err=True)
         raise typer.Exit(2) from error
 
 
 def write_whole(contents: dict[Path, str | bytes]) -> None:
-    """Write files whole or not at all: each beside its place first, then moved there."""
+    """Write files whole or not at all: each beside its place first, then moved there.
+
+    OSError names the file that was to be written.
+    """
     ready: list[tuple[str, Path]] = []
     try:
         for path, content in contents.items():
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            with _told_of(path), tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
                 ready.append((file.name, path))
                 file.write(content.encode() if isinstance(content, str) else content)
             Path(file.name).chmod(0o644)
         for beside, path in ready:
-            Path(beside).replace(path)
+            with _told_of(path):
+                Path(beside).replace(path)
     finally:
         for beside, _ in ready:
             Path(beside).unlink(missing_ok=True)
+
+
+@contextmanager
+def _told_of(path: Path) -> Iterator[None]:
+    """Let an error name a file that is written, not the temporary one beside it."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error

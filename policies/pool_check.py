@@ -60,7 +60,7 @@ def _read(folder: Traversable) -> Given:
         try:
             texts[name] = folder.joinpath(name).read_text(encoding="utf-8")
         except OSError as error:
-            raise StimulusError(f"{name}: expected a readable file: {error}") from error
+            raise StimulusError(f"{name}: expected a readable file: {error.strerror}") from error
     pool = parse_pool(texts["pool.json"])
     try:
         stated = json.loads(texts["manifest.json"])

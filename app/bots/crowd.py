@@ -14,6 +14,7 @@ from app.bots.browser import Browser, NoServer
 from app.bots.kinds import Mix, deal_kinds
 from app.bots.turns import Line, Turn
 from app.bots.visit import Visit
+from app.errors import StudyClosed
 from app.main import create_app
 from app.schemas import Answered
 from app.settings import Settings
@@ -95,9 +96,20 @@ def run(
 
     async def enter() -> list[Outcome]:
         async with entry as new_client:
+            await _require_open(new_client)
             return await simulate(new_client, bots, at_once, finished)
 
     return asyncio.run(enter())
+
+
+async def _require_open(new_client: NewClient) -> None:
+    async with new_client() as client:
+        reply = await client.get("/")
+    if reply.status_code == StudyClosed.status:
+        raise StudyClosed(
+            "expected a study that takes participants, this one is closed: GOALGUESS_STUDY_OPEN is "
+            "false where it runs"
+        )
 
 
 @asynccontextmanager

@@ -21,7 +21,7 @@ def fails_with(said: str, *arguments) -> None:
     result = run(*arguments)
     assert result.exit_code == 2
     assert result.stdout == ""
-    assert result.stderr.startswith("error: ")
+    assert result.stderr.startswith("goalguess: ")
     assert said in result.stderr
     assert result.stderr.count("\n") == 1
 
