@@ -127,7 +127,8 @@ def _commit_together(connection: Connection, group: list[_Waiting]) -> None:
 
 def sqlite_engine(url: str, begin: str) -> Engine:
     """An engine whose transactions start with `begin`, durable and with foreign keys enforced."""
-    engine = create_engine(url, poolclass=NullPool)
+    # Without hide_parameters an error would tell the log who it was about.
+    engine = create_engine(url, poolclass=NullPool, hide_parameters=True)
     busy_ms = ASK_AGAIN_MS if begin == "BEGIN IMMEDIATE" else BUSY_MS
 
     @event.listens_for(engine, "connect")

@@ -96,5 +96,6 @@ def _render_http_error(request: Request, error: Exception) -> Response:
 def _render_crash(request: Request, error: Exception) -> Response:
     log.exception("%s %s failed", request.method, own_path(request.scope), exc_info=error)
     reply = render_error(request, AppError("Something went wrong on our side. Please try again."))
-    reply.headers.update(HEADERS)
+    # The server closes after a crash; who does not know would lose the next request.
+    reply.headers.update({**HEADERS, "Connection": "close"})
     return reply

@@ -70,5 +70,8 @@ class ServerProcess:
 
     def _ended(self) -> None:
         assert self._process.stdout
+        if self._log:
+            self._log.write(self._process.stdout.read())
+            self._log.flush()
         self._process.stdout.close()
         self._process.wait()
