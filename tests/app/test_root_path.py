@@ -14,7 +14,7 @@ from app.main import create_app
 from app.pages import resources
 from tests import messages
 from tests.app.conftest import ORIGIN, Browser
-from tests.app.prefix_proxy import PrefixProxy
+from tests.prefix_proxy import PrefixProxy
 
 PREFIX = "/lab/study"
 ADDRESS = re.compile(r'(?:href|src|action)="(?!#|mailto:|https://app\.prolific)(.*?)"')

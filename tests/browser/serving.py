@@ -3,28 +3,36 @@
 import socket
 import threading
 import time
-from collections.abc import Iterator, Sized
+from collections.abc import Callable, Iterator, Sized
 from contextlib import contextmanager
 
 import uvicorn
+from starlette.types import ASGIApp
 
 from app.main import create_app
 from app.serving import StudyConfig
 from app.settings import Settings
 
+Front = Callable[[ASGIApp], ASGIApp]
+
 
 class Server:
-    """A study's server; however often it is stopped and started, its port and database stay."""
+    """A study's server; however often it is stopped and started, its port and database stay.
 
-    def __init__(self, settings: Settings) -> None:
+    `front` is what stands before it, as a proxy does.
+    """
+
+    def __init__(self, settings: Settings, front: Front = lambda study: study) -> None:
         self._settings = settings
+        self._front = front
         self.port = free_port()
         self.url = f"http://127.0.0.1:{self.port}"
 
     def start(self) -> None:
         """Serve; returns when requests are answered."""
         listener = socket.create_server(("127.0.0.1", self.port))
-        self._server = uvicorn.Server(StudyConfig(create_app(self._settings), self._settings))
+        app = self._front(create_app(self._settings))
+        self._server = uvicorn.Server(StudyConfig(app, self._settings))
         self._thread = threading.Thread(target=self._server.run, args=([listener],))
         self._thread.start()
         while not self._server.started:
