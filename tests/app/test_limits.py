@@ -1,15 +1,20 @@
 """How many may begin from one network: as many at once as in a minute, then one at a time."""
 
+import asyncio
+
 import pytest
+from httpx2 import AsyncClient, Client, MockTransport, Response
 from sqlalchemy import select
 from starlette.testclient import TestClient
 
 from app import limits
+from app.bots.browser import Browser as Visitor
 from app.database import Database
 from app.limits import Moderation
 from app.main import create_app
 from app.tables import participants
 from tests.app.conftest import ORIGIN, Browser
+from tests.browser.serving import served
 
 
 class Clock:
@@ -84,3 +89,29 @@ def test_one_consent_too_many_is_asked_to_wait_and_makes_nobody(settings):
     assert len(made) == 2
     assert replies[2].headers["retry-after"] == "30"
     assert "wait 30 seconds" in replies[2].text
+
+
+def test_the_limit_counts_the_addresses_that_a_proxy_passes_on(settings):
+    few = settings.model_copy(update={"consents_per_minute": 1})
+    with served(few) as url, Client(base_url=url, headers={"host": "study.test"}) as client:
+        statuses = []
+        for address in ("192.0.2.1", "192.0.2.2", "192.0.2.1", None, None):
+            client.cookies.clear()
+            passed_on = {"x-forwarded-for": address} if address else {}
+            client.headers.update(passed_on)
+            statuses.append(Browser(client).consent().status_code)  # type: ignore[arg-type]
+            client.headers.pop("x-forwarded-for", None)
+    assert statuses == [303, 303, 429, 303, 303]
+
+
+def test_simulated_participants_wait_and_come_again():
+    replies = iter([429, 429, 200])
+
+    def answer(_request):
+        return Response(next(replies), headers={"retry-after": "0"}, text="<h1>Welcome</h1>")
+
+    async def come():
+        async with AsyncClient(transport=MockTransport(answer), base_url="http://a.test") as client:
+            return await Visitor(client).open("/")
+
+    assert asyncio.run(come()).heading == "Welcome"
