@@ -70,7 +70,7 @@ class ServerProcess:
 
     def _ended(self) -> None:
         assert self._process.stdout
-        if self._log:
+        if self._log and not self._process.stdout.closed:
             self._log.write(self._process.stdout.read())
             self._log.flush()
         self._process.stdout.close()

@@ -9,7 +9,7 @@ import pytest
 from app.bots.crowd import draw_bots, run
 from app.bots.kinds import Kind, read_mix
 from app.bots.visit import LEFT
-from app.errors import AppError
+from app.errors import AppError, StudyClosed
 from app.settings import Settings
 from tests.browser.serving import served
 
@@ -195,10 +195,10 @@ def test_places_lost_meanwhile_are_dealt_anew(tmp_path):
     assert len(query(settings.database_file, ANSWERED)) == sum(len(o.answers) for o in outcomes)
 
 
-def test_a_closed_study_is_where_they_end(tmp_path):
+def test_a_closed_study_is_told_of_before_anybody_comes(tmp_path):
     settings = settings_on(tmp_path / "study.sqlite").model_copy(update={"study_open": False})
-    (outcome,) = run(draw_bots(1, 1, read_mix("attentive")), settings, at_once=1)
-    assert outcome.ended == "The study is closed"
+    with pytest.raises(StudyClosed, match="GOALGUESS_STUDY_OPEN is false"):
+        run(draw_bots(1, 1, read_mix("attentive")), settings, at_once=1)
 
 
 @pytest.mark.parametrize("url", ["http://127.0.0.1:9/", "nonsense", "ftp://127.0.0.1/"])
