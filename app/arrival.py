@@ -1,7 +1,7 @@
 """Arrival: the invitation link, coming back by it, and consent.
 
 Each function takes the connection of an open transaction; `database.write` commits it before
-the reply.
+the reply. Opening the link changes nothing: scanners and previews open people's links, too.
 """
 
 import secrets
@@ -56,10 +56,15 @@ class Link:
 
 @dataclass(frozen=True)
 class Known:
-    """Somebody who opened the link again; `moves`: in a browser that has no session of theirs."""
+    """Somebody who opened a link again.
+
+    `elsewhere`: in a browser that has no session of theirs; `same_invitation`: by the link with
+    which they began, and not by one for another submission of theirs.
+    """
 
     participant: Record
-    moves: bool
+    elsewhere: bool
+    same_invitation: bool
 
 
 def find(connection: Connection, link: Link, token: str | None) -> Known | None:
@@ -73,28 +78,59 @@ def find(connection: Connection, link: Link, token: str | None) -> Known | None:
         here = None
     if link.recruiter_id is None:
         stays = here is not None and here.step not in ENDINGS
-        return Known(here, moves=False) if here is not None and stays else None
+        return Known(here, False, True) if here is not None and stays else None
     known = repository.participant_recruited(connection, link.stream, link.recruiter_id)
-    return known and Known(known, moves=here is None or here.id != known.id)
+    if known is None:
+        return None
+    return Known(
+        known,
+        elsewhere=here is None or here.id != known.id,
+        same_invitation=_same_invitation(repository.recruit_of(connection, known.id), link),
+    )
 
 
-def come_back(connection: Connection, study: Study, known: Known, user_agent: str) -> str:
+def go_on_here(
+    connection: Connection, study: Study, link: Link, token: str | None, user_agent: str
+) -> tuple[Step, str | None] | None:
+    """Let somebody who is known by their link go on in this browser.
+
+    Returns their step and their new session's token, none where this browser had one already;
+    None for whoever is not known (any more).
+    """
+    known = find(connection, link, token)
+    if known is None:
+        return None
+    step = Step(known.participant.step)
+    if not known.elsewhere:
+        return step, None
+    proven = known.same_invitation and link.recruiter_session is not None
+    return step, _move(connection, study, known.participant, user_agent, proven)
+
+
+def _move(
+    connection: Connection, study: Study, participant: Record, user_agent: str, proven: bool
+) -> str:
     """Move a participant's session to this browser; returns its token.
 
     An animation that was moving in the other browser counts as seen for as long as it can have
     been: it goes on from there, and cannot be watched again from its start.
     """
-    token = begin_session(connection, study, known.participant, "came_back", user_agent)
-    trial = repository.last_trial(connection, known.participant.id)
+    token = begin_session(connection, study, participant, "came_back", user_agent, proven)
+    trial = repository.last_trial(connection, participant.id)
     if trial is not None and trial.stopped_at is None:
         since_ms = (repository.now() - trial.played_at) / timedelta(milliseconds=1)
         repository.change_trial(
             connection,
-            known.participant.id,
+            participant.id,
             trial.trial_index,
             position_ms=max(trial.position_ms, min(since_ms, trial.length_ms)),
         )
     return token
+
+
+def _same_invitation(recruit: Record | None, link: Link) -> bool:
+    began_with = recruit and (recruit.recruiter_study, recruit.recruiter_session)
+    return began_with == (link.recruiter_study, link.recruiter_session)
 
 
 def consent(
@@ -107,14 +143,16 @@ def consent(
 ) -> str | None:
     """Make the participant, once for each recruiter's id, browser and showing of the form.
 
-    Returns the token of their session, or None when this browser has it already.
+    Returns the token of their session; None when there is a participant already, whom the link
+    leads on.
     """
     known = find(connection, link, token)
     sent_before = repository.participant_arrived(connection, arrival)
-    if known is None and sent_before is not None:
-        known = Known(sent_before, moves=True)
-    if known is not None:
-        return come_back(connection, study, known, user_agent) if known.moves else None
+    if known is not None and not (known.elsewhere and sent_before):
+        return None
+    if sent_before is not None:
+        # Pressed twice: the browser gave up the reply that brought its session.
+        return _move(connection, study, sent_before, user_agent, proven=True)
     if not study.settings.study_open:
         raise StudyClosed(CLOSED_TO_ARRIVALS)
     participant = repository.add_participant(
@@ -138,7 +176,7 @@ def consent(
             recruiter_study=link.recruiter_study,
             recruiter_session=link.recruiter_session,
         )
-    return begin_session(connection, study, participant, "consented", user_agent)
+    return begin_session(connection, study, participant, "consented", user_agent, proven=True)
 
 
 def decline(connection: Connection, link: Link) -> None:

@@ -61,11 +61,14 @@ def token_of(request: Request) -> str | None:
     return request.cookies.get(COOKIE)
 
 
-async def participant_at(request: Request, *steps: Step) -> Record:
-    """The participant, who must be at one of the steps; AtAnotherStep leads to theirs."""
+async def participant_at(request: Request, *steps: Step, whose: str | None = None) -> Record:
+    """The participant, who must be at one of the steps; AtAnotherStep leads to theirs.
+
+    `whose`: as the page says it, see `sessions.participant_of`.
+    """
     token = token_of(request)
     participant = await services(request).database.read(
-        lambda connection: participant_of(connection, token)
+        lambda connection: participant_of(connection, token, whose)
     )
     if participant.step not in steps:
         raise AtAnotherStep(Step(participant.step))

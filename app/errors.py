@@ -3,6 +3,9 @@
 AppError (carries an HTTP status and a code; one handler renders it as page or JSON)
 ├── NoSession          401  the browser has no session, or one that has ended
 ├── Moved              409  the session went on in another browser
+├── OtherParticipant   409  the browser's session is not that of the page's participant any more
+├── NotProven          403  a browser that has not shown to be the participant's
+├── NoSuchTrial        404  the study has no trial of this number
 ├── WrongStep          409  what was sent belongs to a step the participant is not at
 ├── StudyClosed        409  the study takes no new participants, and nobody out, any more
 ├── PlaceReturned      409  the place went to somebody else before its first frame was played
@@ -41,6 +44,36 @@ class Moved(AppError):
 
     def __init__(self) -> None:
         super().__init__("You went on with the study in another browser.")
+
+
+class OtherParticipant(AppError):
+    """The browser's session is not that of the page's participant any more."""
+
+    status = 409
+    code = "other_participant"
+
+    def __init__(self) -> None:
+        super().__init__("Somebody else has begun the study in this browser since.")
+
+
+class NotProven(AppError):
+    """A browser that has not shown to be the participant's."""
+
+    status = 403
+    code = "not_proven"
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Please withdraw in the browser in which you took part, or open here the very "
+            "invitation with which you began. Otherwise, write to the researchers."
+        )
+
+
+class NoSuchTrial(AppError):
+    """The study has no trial of this number."""
+
+    status = 404
+    code = "no_such_trial"
 
 
 class WrongStep(AppError):

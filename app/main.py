@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from app import VERSION, participant, trials_api
 from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see
-from app.errors import AppError, Moved, StudyClosed, WrongStep
+from app.errors import AppError, Moved, OtherParticipant, StudyClosed, WrongStep
 from app.opening import open_database
 from app.pages import Pages, static_app
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
@@ -60,8 +60,8 @@ def render_error(request: Request, error: Exception) -> Response:
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
         return see(error.path if isinstance(error, AtAnotherStep) else OWN_PAGE)
-    if isinstance(error, Moved):
-        return page(request, "moved.html", status=error.status)
+    if isinstance(error, Moved | OtherParticipant):
+        return page(request, f"{error.code}.html", status=error.status)
     if isinstance(error, StudyClosed):
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
     context = {"status": error.status, "message": str(error)}

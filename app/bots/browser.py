@@ -82,6 +82,10 @@ class Browser:
         """Send a message of a page's script; the reply."""
         return _state(await self._patiently("POST", path, content=message.model_dump_json()))
 
+    async def ask(self, path: str) -> dict[str, Any]:
+        """Ask for something that changes what is stored, as a page's script does."""
+        return _state(await self._patiently("POST", path, content="{}"))
+
     async def _patiently(self, method: str, path: str, **request: Any) -> Response:
         wait, waited = FIRST_WAIT_S, 0.0
         while True:

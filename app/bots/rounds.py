@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
 from app.bots.bot import Bot
-from app.bots.browser import Browser
+from app.bots.browser import Browser, Refused
 from app.bots.kinds import Kind
 from app.bots.observer import Judgement, letters_of, watch_to_the_end
 from app.schemas import Answered, EventType, Logged, LoggedEvent, Message, Played, Stopped
@@ -52,7 +52,12 @@ class Rounds:
 
     async def _load(self) -> State:
         self._clock_ms = 0.0
-        state = await self._browser.fetch("/api/trial")
+        try:
+            state = await self._browser.fetch("/api/trial")
+        except Refused as refused:
+            if refused.refusal != "place_returned":
+                raise
+            state = await self._browser.ask("/api/place")
         self._log("shown")
         return state
 

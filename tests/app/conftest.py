@@ -65,10 +65,17 @@ class Browser:
     def send(self, path: str, body: dict[str, Any]) -> Response:
         return self.client.post(path, json=body, headers={"origin": ORIGIN})
 
+    def hidden_fields(self, path: str) -> dict[str, str]:
+        """What the form of a page sends along."""
+        page = self.get(path)
+        return dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
+
     def consent(self, query: str = "") -> Response:
-        page = self.get(f"/{query}")
-        fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
-        return self.post("/consent", {**fields, "decision": "yes"})
+        return self.post("/consent", {**self.hidden_fields(f"/{query}"), "decision": "yes"})
+
+    def go_on_here(self, query: str) -> Response:
+        """Open the link in this browser, and press the button."""
+        return self.post("/go-on", self.hidden_fields(f"/{query}"))
 
     def reach_practice(self, query: str = "") -> None:
         self.consent(query)

@@ -73,7 +73,7 @@ def test_consent_sent_twice_makes_one_participant(browser, rows):
 
 def test_the_same_recruiter_id_comes_back_to_where_it_was(browser, another_browser, rows):
     browser.reach_practice(PROLIFIC)
-    assert location(another_browser().get("/" + PROLIFIC)) == "/practice"
+    assert location(another_browser().go_on_here(PROLIFIC)) == "/practice"
     assert len(rows(participants)) == 1
 
 
@@ -88,12 +88,10 @@ def test_consenting_in_two_browsers_with_one_recruiter_id_makes_one_participant(
     assert len(rows(participants)) == 1
 
 
-def test_the_link_moves_the_session_to_the_newest_browser_and_the_older_is_told(
-    browser, another_browser
-):
+def test_going_on_here_moves_the_session_and_the_older_browser_is_told(browser, another_browser):
     browser.reach_trials(PROLIFIC)
     newer = another_browser()
-    newer.get("/" + PROLIFIC)
+    newer.go_on_here(PROLIFIC)
     assert newer.get("/trial").status_code == 200
     told = browser.get("/trial")
     assert told.status_code == 409
@@ -171,13 +169,13 @@ def test_a_moving_animation_goes_on_in_another_browser_as_far_as_it_can_have_bee
     database = client.app.state.services.database
     database.submit(lambda c: c.execute(update(trials).values(played_at=then))).result()
     newer = another_browser()
-    newer.get("/" + PROLIFIC)
+    newer.go_on_here(PROLIFIC)
     assert 7000 <= newer.current()["position_ms"] < 9000
     database.submit(
         lambda c: c.execute(update(trials).values(played_at=then - timedelta(hours=1)))
     ).result()
     third = another_browser()
-    third.get("/" + PROLIFIC)
+    third.go_on_here(PROLIFIC)
     assert third.current()["position_ms"] == rows(trials)[0].length_ms
 
 
@@ -185,7 +183,7 @@ def test_the_browser_that_somebody_comes_back_with_is_logged(browser, another_br
     browser.consent(PROLIFIC)
     newer = another_browser()
     newer.client.headers["user-agent"] = "Newer/2.0"
-    newer.get("/" + PROLIFIC)
+    newer.go_on_here(PROLIFIC)
     assert [row.details["user_agent"] for row in rows(events) if row.type == "came_back"] == [
         "Newer/2.0"
     ]
@@ -193,5 +191,5 @@ def test_the_browser_that_somebody_comes_back_with_is_logged(browser, another_br
 
 def test_an_old_session_on_the_plain_link_belongs_to_somebody_else(browser, another_browser):
     browser.reach_practice(PROLIFIC)
-    another_browser().get("/" + PROLIFIC)
+    another_browser().go_on_here(PROLIFIC)
     assert "I agree" in browser.get("/").text
