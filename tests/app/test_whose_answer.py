@@ -1,6 +1,7 @@
 """Whose page speaks: other browsers, other people in one browser, other invitations."""
 
 import sqlite3
+from typing import Any
 
 import pytest
 
@@ -36,7 +37,7 @@ def dump(settings):
         return list(connection.iterdump())
 
 
-ROUTES = [*participant.router.routes, *trials_api.routes]
+ROUTES: list[Any] = [*participant.router.routes, *trials_api.routes]
 PATHS = [
     *sorted({route.path for route in ROUTES if "GET" in route.methods}),
     *(f"/{link}" for link in (ANN, ANN_AGAIN, BOB, "?preview=1", "nowhere")),

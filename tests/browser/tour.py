@@ -28,6 +28,10 @@ def tour(page: Page) -> Iterator[str]:
     page.get_by_role("button", name="Continue").click()
     page.get_by_role("alert").wait_for()
     yield "about you, with errors"
+    page.evaluate("document.querySelector('[name=participant]').value = 'another'")
+    page.get_by_role("button", name="Continue").click()
+    page.get_by_role("heading", name="Somebody else").wait_for()
+    yield "somebody else's turn"
     yield from _practice_and_rounds(page)
     yield from _endings(page)
 
@@ -73,7 +77,7 @@ def _practice_and_rounds(page: Page) -> Iterator[str]:
     page.locator("input[name=confidence][value='6']").check()
     yield "round, answered"
     page.evaluate("document.getElementById('rounds').hidden = true")
-    for notice in ("other-tab", "trouble"):
+    for notice in ("other-tab", "other-person", "trouble"):
         page.evaluate("id => (document.getElementById(id).hidden = false)", notice)
         yield f"round, {notice}"
         page.evaluate("id => (document.getElementById(id).hidden = true)", notice)
@@ -103,6 +107,9 @@ def _endings(page: Page) -> Iterator[str]:
     session = page.context.cookies()
     page.context.clear_cookies()
     page.goto(link)  # the link in what looks like another browser
+    yield "go on here"
+    page.get_by_role("button", name="Go on here").click()
+    page.wait_for_url("**/practice")
     page.context.clear_cookies()
     page.context.add_cookies(session)  # type: ignore[arg-type]
     page.goto("/practice")
