@@ -50,6 +50,12 @@ class Page:
         return read_form(self.html) or Form("")
 
     @property
+    def participant(self) -> str | None:
+        """Whose page it is, as it tells its scripts."""
+        told = re.search(r'data-participant="(.*?)"', self.html)
+        return told[1] if told else None
+
+    @property
     def heading(self) -> str:
         """The words of the page's heading."""
         heading = re.search(r"<h1.*?>(.*?)</h1>", self.html, re.DOTALL)
