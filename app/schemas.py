@@ -3,7 +3,7 @@
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 Key = Annotated[str, Field(min_length=8, max_length=64, pattern=r"^[A-Za-z0-9-]+$")]
 Count = Annotated[int, Field(ge=0, le=1_000_000)]
@@ -24,6 +24,17 @@ EventType = Literal[
     "continued",
     "second_tab",
 ]
+
+
+POINTER_TYPES = ("mouse", "touch", "pen", "keyboard", "other")
+
+
+def pointer_type(sent: Any) -> str | None:
+    """One of `POINTER_TYPES`, whatever a page sent; None where it sent none."""
+    return sent if sent is None or sent in POINTER_TYPES else "other"
+
+
+PointerType = Annotated[str | None, BeforeValidator(pointer_type)]
 
 
 def _json(details: dict[str, Any]) -> dict[str, Any]:
@@ -58,7 +69,7 @@ class Device(_Strict):
     viewport_height: Pixels
     pixel_ratio: Annotated[float, Field(gt=0, le=100, allow_inf_nan=False)]
     refresh_rate_hz: Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)] | None = None
-    pointer_type: Annotated[str, Field(max_length=20)] | None = None
+    pointer_type: PointerType = None
     reduced_motion: bool
 
 
