@@ -9,8 +9,8 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from app import VERSION, participant, trials_api
-from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see
-from app.errors import AppError, Moved, StudyClosed, WrongStep
+from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see, way_on
+from app.errors import AppError, BadLink, Moved, StudyClosed, WrongStep
 from app.opening import open_database
 from app.pages import Pages, static_app
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
@@ -64,7 +64,9 @@ def render_error(request: Request, error: Exception) -> Response:
         return page(request, "moved.html", status=error.status)
     if isinstance(error, StudyClosed):
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
-    context = {"status": error.status, "message": str(error)}
+    if isinstance(error, BadLink):
+        return page(request, "bad_link.html", {"message": str(error)}, status=error.status)
+    context = {"status": error.status, "message": str(error), "way_on": way_on(request, error)}
     return page(request, "error.html", context, status=error.status)
 
 

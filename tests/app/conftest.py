@@ -65,10 +65,13 @@ class Browser:
     def send(self, path: str, body: dict[str, Any]) -> Response:
         return self.client.post(path, json=body, headers={"origin": ORIGIN})
 
-    def consent(self, query: str = "") -> Response:
-        page = self.get(f"/{query}")
-        fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
-        return self.post("/consent", {**fields, "decision": "yes"})
+    def consent(self, query: str = "", decision: str = "yes") -> Response:
+        return self.post("/consent", {**self.consent_form(query), "decision": decision})
+
+    def consent_form(self, query: str = "") -> dict[str, str]:
+        """The hidden fields of one showing of the consent form."""
+        page = self.get(f"/{query}").text
+        return dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page))
 
     def reach_practice(self, query: str = "") -> None:
         self.consent(query)
