@@ -10,13 +10,14 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from starlette.responses import Response
 
+from app import repository
 from app.arrival import stream_of
 from app.database import Database
 from app.errors import NoSession, WrongStep
 from app.pages import Pages
 from app.recruiter_ids import PARAMETERS
 from app.repository import Record
-from app.sessions import participant_of
+from app.sessions import hashed, participant_of
 from app.settings import Ending
 from app.steps import ENDINGS, Step, may_withdraw
 from app.study import PILOTS, Study
@@ -71,7 +72,6 @@ async def participant_at(request: Request, *steps: Step) -> Record:
     participant = await services(request).database.read(
         lambda connection: participant_of(connection, token)
     )
-    request.state.stream = participant.stream
     if participant.step not in steps:
         raise AtAnotherStep(Step(participant.step))
     return participant
@@ -98,10 +98,24 @@ def page(
 
 
 def pilot_of(request: Request, participant: Record | None = None) -> str | None:
-    """The stream of a pilot, as their row, this request or its link tells; else None."""
-    known = participant.stream if participant else getattr(request.state, "stream", None)
-    stream = known or stream_of(_link_values(request))
-    return stream if stream in PILOTS else None
+    """The stream of a pilot, as their row, the request's link or its session tells; else None."""
+    if participant is not None:
+        streams = [participant.stream]
+    else:
+        streams = [stream_of(_link_values(request)), getattr(request.state, "stream", None)]
+    return next((stream for stream in streams if stream in PILOTS), None)
+
+
+def recognise(request: Request) -> None:
+    """Note the stream of the browser's session, if it has one, for pages that need none."""
+    token = token_of(request)
+    if token is None:
+        return
+    known = services(request).database.read_now(
+        lambda connection: repository.participant_in_session(connection, hashed(token))
+    )
+    if known is not None:
+        request.state.stream = known.stream
 
 
 def recruiter(

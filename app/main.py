@@ -9,7 +9,16 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from app import VERSION, participant, trials_api
-from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see, way_on
+from app.deps import (
+    OWN_PAGE,
+    AtAnotherStep,
+    Services,
+    as_json,
+    page,
+    recognise,
+    see,
+    way_on,
+)
 from app.errors import AppError, BadLink, Moved, StudyClosed, WrongStep
 from app.opening import open_database
 from app.pages import Pages, static_app
@@ -60,6 +69,8 @@ def render_error(request: Request, error: Exception) -> Response:
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
         return see(error.path if isinstance(error, AtAnotherStep) else OWN_PAGE)
+    if error.status < 500:
+        recognise(request)
     if isinstance(error, Moved):
         return page(request, "moved.html", status=error.status)
     if isinstance(error, StudyClosed):

@@ -122,6 +122,7 @@ def test_error_pages_that_know_a_pilot_say_so_too(browser, settings, pilot):
     form = {**browser.consent_form(f"?{pilot}=1"), "decision": "maybe"}
     assert BANNER[pilot] in browser.post("/consent", form).text
     browser.take_part(f"?{pilot}=1")
+    assert BANNER[pilot] in browser.get("/nowhere").text
     closed = settings.model_copy(update={"study_open": False})
     with TestClient(create_app(closed), base_url=ORIGIN) as client:
         client.cookies.set("goalguess_session", browser.client.cookies["goalguess_session"])
