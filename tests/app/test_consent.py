@@ -65,6 +65,14 @@ def test_who_says_no_after_yes_is_led_to_the_withdrawal_and_not_counted(browser,
     assert counts(rows) == []
 
 
+def test_who_says_no_after_yes_is_not_counted_even_without_a_cookie(browser, rows):
+    form = browser.consent_form()
+    browser.post("/consent", {**form, "decision": "yes"})
+    browser.client.cookies.clear()
+    browser.post("/consent", {**form, "decision": "no"})
+    assert counts(rows) == []
+
+
 def test_a_no_is_kept_as_a_random_number_of_the_form_alone(browser, rows):
     form = browser.consent_form("?PROLIFIC_PID=p1")
     browser.post("/consent", {**form, "decision": "no"})

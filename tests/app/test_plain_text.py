@@ -62,6 +62,11 @@ def test_what_is_too_long_is_told_as_that(text):
     assert problem_of(text) == "Please use at most 60 characters."
 
 
+def test_marks_without_end_on_one_character_are_too_long():
+    assert problem_of("e" + "\u0301" * 959) is None
+    assert problem_of("e" + "\u0301" * 960) == "Please use at most 60 characters."
+
+
 @given(st.text(TEXT, max_size=80))
 def test_no_text_has_more_characters_than_code_points_and_composing_adds_none(text):
     count = count_characters(text)
