@@ -3,7 +3,7 @@
 Functions take an open connection and plain values, and apply no rules.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import Connection, delete, exists, func, select
@@ -95,6 +95,16 @@ def all_recruits(connection: Connection, stream: str) -> Iterable[Record]:
         .where(recruits.c.stream == stream)
         .order_by(participants.c.id)
     )
+
+
+def everybody_recruited_as(connection: Connection, recruiter_id: str) -> Sequence[Record]:
+    """The participants of all streams with a recruiter's id, stored with blanks or without."""
+    return connection.execute(
+        select(participants)
+        .join(recruits, recruits.c.participant_id == participants.c.id)
+        .where(func.trim(recruits.c.recruiter_id) == recruiter_id)
+        .order_by(participants.c.id)
+    ).all()
 
 
 def count_without_id(connection: Connection, stream: str) -> int:

@@ -101,7 +101,7 @@ def withdraw(connection: Connection, study: Study, token: str | None) -> str:
 
 def withdraw_recruited(connection: Connection, study: Study, recruiter_id: str) -> int:
     """Withdraw everybody with a recruiter's id, at whatever step; returns how many there were."""
-    found = repository.all_recruited(connection, recruiter_id)
+    found = books.everybody_recruited_as(connection, recruiter_id)
     for participant in found:
         withdraw_participant(connection, study, participant)
     return len(found)

@@ -54,16 +54,6 @@ def participant_recruited(connection: Connection, stream: str, recruiter_id: str
     ).one_or_none()
 
 
-def all_recruited(connection: Connection, recruiter_id: str) -> Sequence[Record]:
-    """Every participant with a recruiter's id, of any stream, with blanks around it or without."""
-    return connection.execute(
-        select(participants)
-        .join(recruits, recruits.c.participant_id == participants.c.id)
-        .where(func.trim(recruits.c.recruiter_id) == recruiter_id)
-        .order_by(participants.c.id)
-    ).all()
-
-
 _ARRIVED = select(participants).where(participants.c.arrival == bindparam("arrival"))
 
 
