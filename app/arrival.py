@@ -4,6 +4,7 @@ Each function takes the connection of an open transaction; `database.write` comm
 the reply. Opening the link changes nothing: scanners and previews open people's links, too.
 """
 
+import re
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,45 +14,58 @@ from sqlalchemy import Connection
 
 from app import VERSION, books, repository
 from app.errors import CLOSED_TO_ARRIVALS, InvalidInput, StudyClosed
+from app.recruiter_ids import PARAMETERS, lacking_id, misnamed, read_id, require_shape
 from app.repository import Record
 from app.sessions import begin_session, hashed
 from app.steps import ENDINGS, Step
-from app.study import PARTICIPANT, PREVIEW, SIMULATED, Study
+from app.study import PARTICIPANT, PILOTS, Study
 
-LONGEST_ID = 100
+DECLINED = "arrived, no consent"
+"""Name of the anonymous count of those who said no."""
 
-_LINK_IDS = ("PROLIFIC_PID", "STUDY_ID", "SESSION_ID")
+_ARRIVAL = re.compile(r"[A-Za-z0-9_-]{16,64}")
 
 
 @dataclass(frozen=True)
 class Link:
-    """What an invitation link says: the recruiter's ids, and whether this is a pilot."""
+    """What an invitation link says: the recruiter's ids, and whether this is a pilot.
+
+    `misnamed` is a parameter that looks like the id under a name that is not ours.
+    """
 
     recruiter_id: str | None = None
     recruiter_study: str | None = None
     recruiter_session: str | None = None
     stream: str = PARTICIPANT
+    misnamed: str | None = None
 
     @classmethod
     def read(cls, values: Mapping[str, str]) -> "Link":
-        """Read a link's query or the consent form's hidden fields; InvalidInput if impossible."""
-        ids = [values.get(name) or None for name in _LINK_IDS]
-        for name, value in zip(_LINK_IDS, ids, strict=True):
-            possible = value is None or (len(value) <= LONGEST_ID and value.isprintable())
-            if not possible or (value and "{{" in value):
-                raise InvalidInput(
-                    f"{name}: expected at most {LONGEST_ID} printable characters in the link, "
-                    "filled in by the recruiter."
-                )
-        pilots = (stream for stream in (PREVIEW, SIMULATED) if values.get(stream))
-        stream = next(pilots, PARTICIPANT)
-        return cls(ids[0], ids[1], ids[2], stream)
+        """Read a link's query or the consent form's hidden fields; BadLink if not filled in."""
+        ids = [read_id(name, values) for name in PARAMETERS]
+        return cls(ids[0], ids[1], ids[2], stream_of(values), misnamed(values))
+
+    @property
+    def ids(self) -> dict[str, str]:
+        """The recruiter's ids by parameter."""
+        ids = (self.recruiter_id, self.recruiter_study, self.recruiter_session)
+        return {name: value for name, value in zip(PARAMETERS, ids, strict=True) if value}
 
     def fields(self) -> dict[str, str]:
-        """The same as hidden fields of the consent form."""
-        ids = (self.recruiter_id, self.recruiter_study, self.recruiter_session)
-        fields = {name: value for name, value in zip(_LINK_IDS, ids, strict=True) if value}
-        return fields if self.stream == PARTICIPANT else {**fields, self.stream: "1"}
+        """The same as hidden fields of the consent form, or the query of a link."""
+        return self.ids if self.stream == PARTICIPANT else {**self.ids, self.stream: "1"}
+
+    def require_of_newcomer(self, id_required: bool) -> None:
+        """BadLink unless somebody who is not known yet can come by this link."""
+        for name, value in self.ids.items():
+            require_shape(name, value)
+        if id_required and self.recruiter_id is None and self.stream == PARTICIPANT:
+            raise lacking_id(self.misnamed)
+
+
+def stream_of(values: Mapping[str, str]) -> str:
+    """The stream that a link or a form is for; only the value 1 makes a pilot."""
+    return next((stream for stream in PILOTS if values.get(stream) == "1"), PARTICIPANT)
 
 
 @dataclass(frozen=True)
@@ -155,9 +169,12 @@ def consent(
         return _move(connection, study, sent_before, user_agent, proven=True)
     if not study.settings.study_open:
         raise StudyClosed(CLOSED_TO_ARRIVALS)
+    link.require_of_newcomer(study.settings.require_id)
+    if books.take_back_no(connection, arrival):
+        books.tally(connection, DECLINED, -1)
     participant = repository.add_participant(
         connection,
-        pseudonym=secrets.token_hex(6),
+        pseudonym=new_pseudonym(),
         arrival=arrival,
         stream=link.stream,
         step=Step.ABOUT_YOU,
@@ -166,6 +183,7 @@ def consent(
         consent_hash=study.consent_hash,
         consented_at=repository.now(),
         user_agent=user_agent,
+        pilot_before=_was_pilot(connection, link),
     )
     if link.recruiter_id:
         repository.add_recruit(
@@ -179,7 +197,36 @@ def consent(
     return begin_session(connection, study, participant, "consented", user_agent, proven=True)
 
 
-def decline(connection: Connection, link: Link) -> None:
-    """Count somebody who gave no consent, unless a pilot; nothing else is kept of them."""
-    if link.stream == PARTICIPANT:
-        books.tally(connection, "arrived, no consent")
+def decline(connection: Connection, arrival: str, link: Link, token: str | None) -> bool:
+    """Count somebody who gave no consent, once for each showing of the form, unless a pilot.
+
+    Nothing else is kept of them. False, and nothing is counted, for who has consented already.
+    """
+    consented = repository.participant_arrived(connection, arrival)
+    if consented is not None or find(connection, link, token) is not None:
+        return False
+    if link.stream == PARTICIPANT and books.note_no(connection, arrival):
+        books.tally(connection, DECLINED)
+    return True
+
+
+def read_arrival(form: Mapping[str, str]) -> str:
+    """The nonce of one showing of the consent form; InvalidInput for what no form of ours has."""
+    arrival = form.get("arrival", "")
+    if not _ARRIVAL.fullmatch(arrival):
+        raise InvalidInput("arrival: expected the hidden field of the consent page.")
+    return arrival
+
+
+def new_pseudonym() -> str:
+    """A random name; no spreadsheet takes it for a number, whatever digits it holds."""
+    return f"p{secrets.token_hex(6)}"
+
+
+def _was_pilot(connection: Connection, link: Link) -> bool:
+    """Whether a participant's recruiter's id has been a pilot before."""
+    if link.stream != PARTICIPANT or link.recruiter_id is None:
+        return False
+    return any(
+        repository.participant_recruited(connection, stream, link.recruiter_id) for stream in PILOTS
+    )

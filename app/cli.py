@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from analysis import commands as analysis_commands
+from app import people_cli
 from app.bots.kinds import DEFAULT_MIX, Kind, read_mix
 from policies import commands as policies_commands
 
@@ -19,6 +20,7 @@ commands = typer.Typer(
 )
 commands.add_typer(policies_commands)
 commands.add_typer(analysis_commands)
+commands.add_typer(people_cli.commands)
 
 
 @commands.command()
@@ -31,17 +33,20 @@ def serve(
     Example: GOALGUESS_DATABASE_URL=sqlite:///study.sqlite goalguess serve --port 8000
     """
     import socket
+    from contextlib import closing
 
     import uvicorn
 
     from app.main import create_app
     from app.opening import open_database
+    from app.recruits import people_without_id
     from app.settings import load_settings
     from app.study import load_study
 
     settings = load_settings()
     # What can go wrong is tried first, so that it is told in one line: the file and the port.
-    open_database(load_study(settings)).close()
+    with closing(open_database(load_study(settings))) as database:
+        without_id = database.read_now(people_without_id)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.create_server((host, port), family=family) as listener:
         server = uvicorn.Server(
@@ -54,6 +59,8 @@ def serve(
         typer.echo(f"To try it without leaving data: {address}?preview=1")
         for gap in settings.gaps:
             typer.echo(f"Not set: {gap}", err=True)
+        if without_id:
+            typer.echo(without_id, err=True)
         server.run(sockets=[listener])
 
 

@@ -103,8 +103,8 @@ def fail(connection: Connection, study: Study, token: str | None, page: str | No
 
 def withdraw(
     connection: Connection, study: Study, token: str | None, page: str | None = None
-) -> None:
-    """Delete all that is known of a participant, and note it outside the database.
+) -> str:
+    """Withdraw the participant of a session, if they may; returns their stream.
 
     NotProven in a browser that may be somebody else's.
     """
@@ -113,6 +113,21 @@ def withdraw(
         raise NotProven
     if not may_withdraw(Step(participant.step), study.settings.study_open):
         raise StudyClosed(CLOSED_TO_WITHDRAWAL)
+    withdraw_participant(connection, study, participant)
+    stream: str = participant.stream
+    return stream
+
+
+def withdraw_recruited(connection: Connection, study: Study, recruiter_id: str) -> int:
+    """Withdraw everybody with a recruiter's id, at whatever step; returns how many there were."""
+    found = books.everybody_recruited_as(connection, recruiter_id)
+    for participant in found:
+        withdraw_participant(connection, study, participant)
+    return len(found)
+
+
+def withdraw_participant(connection: Connection, study: Study, participant: Record) -> None:
+    """Delete all that is known of a participant, and note it outside the database."""
     # Noted before the commit: a withdrawal that is half done is done at the next start.
     with study.settings.withdrawals_file.open("a", encoding="ascii") as journal:
         # On a line of its own even if a crash cut the last one short.

@@ -10,6 +10,7 @@ AppError (carries an HTTP status and a code; one handler renders it as page or J
 ├── StudyClosed        409  the study takes no new participants, and nobody out, any more
 ├── PlaceReturned      409  the place went to somebody else before its first frame was played
 ├── InvalidInput       422  what was sent cannot be: which field, expected, came
+│   └── BadLink        422  the invitation link lacks what the recruiter was to write into it
 ├── TooLarge           413  the request is larger than any page of ours sends
 ├── ForeignOrigin      403  a POST that did not come from our own pages
 ├── DatabaseMismatch   500  a database that this version must not open
@@ -109,6 +110,12 @@ class InvalidInput(AppError):
 
     status = 422
     code = "invalid"
+
+
+class BadLink(InvalidInput):
+    """The invitation link lacks what the recruiter was to write into it."""
+
+    code = "bad_link"
 
 
 class TooLarge(AppError):

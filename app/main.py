@@ -9,8 +9,17 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from app import VERSION, participant, trials_api
-from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see
-from app.errors import AppError, Moved, OtherParticipant, StudyClosed, WrongStep
+from app.deps import (
+    OWN_PAGE,
+    AtAnotherStep,
+    Services,
+    as_json,
+    page,
+    recognise,
+    see,
+    way_on,
+)
+from app.errors import AppError, BadLink, Moved, OtherParticipant, StudyClosed, WrongStep
 from app.opening import open_database
 from app.pages import Pages, static_app
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
@@ -60,11 +69,15 @@ def render_error(request: Request, error: Exception) -> Response:
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
         return see(error.path if isinstance(error, AtAnotherStep) else OWN_PAGE)
+    if error.status < 500:
+        recognise(request)
     if isinstance(error, Moved | OtherParticipant):
         return page(request, f"{error.code}.html", status=error.status)
     if isinstance(error, StudyClosed):
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
-    context = {"status": error.status, "message": str(error)}
+    if isinstance(error, BadLink):
+        return page(request, "bad_link.html", {"message": str(error)}, status=error.status)
+    context = {"status": error.status, "message": str(error), "way_on": way_on(request, error)}
     return page(request, "error.html", context, status=error.status)
 
 

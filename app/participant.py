@@ -9,7 +9,7 @@ from fastapi.responses import Response
 
 from app import answering, arrival, enrolment, repository
 from app.answering import TrialScore
-from app.arrival import Link
+from app.arrival import Link, read_arrival, stream_of
 from app.deps import (
     PATHS,
     page,
@@ -28,9 +28,10 @@ from app.errors import (
     StudyClosed,
 )
 from app.questions import ABOUT_YOU, CONTROL, answers
+from app.recruiter_ids import warn_of
 from app.repository import Record
 from app.steps import ENDINGS, Step, may_withdraw
-from app.study import Study
+from app.study import PARTICIPANT, Study
 
 router = APIRouter(include_in_schema=False)
 
@@ -49,6 +50,9 @@ async def arrive(request: Request) -> Response:
     if known is None and not at.study.settings.study_open:
         raise StudyClosed(CLOSED_TO_ARRIVALS)
     if known is None:
+        if link.misnamed and link.recruiter_id is None:
+            warn_of(link.misnamed)
+        link.require_of_newcomer(at.study.settings.require_id)
         fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
         return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
     step = Step(known.participant.step)
@@ -75,15 +79,14 @@ async def go_on(request: Request) -> Response:
 @router.post("/consent")
 async def consent(request: Request) -> Response:
     """Yes makes the participant; no is only counted."""
-    form = await _form(request)
+    form = request.state.form = await _form(request)
     at, old_token, agent = services(request), token_of(request), _user_agent(request)
-    link = Link.read(form)
-    if form.get("decision") != "yes":
-        await at.database.write(lambda c: arrival.decline(c, link))
-        return see("/no-consent")
-    nonce = form.get("arrival", "")
-    if not 16 <= len(nonce) <= 64:
-        raise InvalidInput("arrival: expected the hidden field of the consent page.")
+    link, nonce, decision = Link.read(form), read_arrival(form), form.get("decision")
+    if decision not in ("yes", "no"):
+        raise InvalidInput("decision: expected yes or no, by a button of the consent page.")
+    if decision == "no":
+        out = await at.database.write(lambda c: arrival.decline(c, nonce, link, old_token))
+        return see(_of_stream("/no-consent", link.stream) if out else "/withdraw")
     token = await at.database.write(
         lambda c: arrival.consent(c, at.study, nonce, link, old_token, agent)
     )
@@ -175,7 +178,7 @@ async def end(request: Request) -> Response:
     participant = await participant_at(request, *ENDINGS)
     own = OTHER_INVITATION not in request.query_params and await _may_see_code(request, participant)
     context: dict[str, object] = {
-        "recruiter": recruiter(request, participant.step) if own else None
+        "recruiter": recruiter(request, participant.step, participant) if own else None
     }
     if participant.step == Step.COMPLETED:
         study = services(request).study
@@ -212,12 +215,15 @@ async def confirm_withdrawal(request: Request) -> Response:
 @router.post("/withdraw")
 async def withdraw(request: Request) -> Response:
     """Delete everything about the participant and forget the browser."""
-    at, token, whose = services(request), token_of(request), (await _form(request)).get(WHOSE)
+    form, at, token = await _form(request), services(request), token_of(request)
+    stream = stream_of(form)
     # Without a session it has been done already: the button was pressed twice.
     with suppress(NoSession):
-        await at.database.write(lambda c: enrolment.withdraw(c, at.study, token, whose))
+        stream = await at.database.write(
+            lambda c: enrolment.withdraw(c, at.study, token, form.get(WHOSE))
+        )
         at.database.forget_deleted()
-    response = see("/withdrawn")
+    response = see(_of_stream("/withdrawn", stream))
     response.headers["Clear-Site-Data"] = '"cookies", "storage"'
     return response
 
@@ -245,6 +251,11 @@ async def _may_see_code(request: Request, participant: Record) -> bool:
 
 def _user_agent(request: Request) -> str:
     return request.headers.get("user-agent", "")[:400]
+
+
+def _of_stream(path: str, stream: str) -> str:
+    """The address of a page that knows no session, by which it still knows a pilot."""
+    return path if stream == PARTICIPANT else f"{path}?{stream}=1"
 
 
 async def _form(request: Request) -> dict[str, str]:

@@ -80,6 +80,17 @@ def _short_json(details: object) -> object:
     return details if short else {"left_out": True}
 
 
+POINTER_TYPES = ("mouse", "touch", "pen", "keyboard", "other")
+
+
+def pointer_type(sent: Any) -> str | None:
+    """One of `POINTER_TYPES`, whatever a page sent; None where it sent none."""
+    return sent if sent is None or sent in POINTER_TYPES else "other"
+
+
+PointerType = Annotated[str | None, BeforeValidator(pointer_type)]
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -147,7 +158,7 @@ class Device(_Strict):
     viewport_height: Pixels
     pixel_ratio: Annotated[float, _within(0.01, 100)]
     refresh_rate_hz: Annotated[float, _within(0.01, 10_000)] | None = None
-    pointer_type: Annotated[str, Field(max_length=20)] | None = None
+    pointer_type: PointerType = None
     reduced_motion: bool
 
 

@@ -1,16 +1,20 @@
 """The study in a process of its own, as `goalguess serve` runs it: to be measured and killed."""
 
+import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 from types import TracebackType
+from typing import get_args
+
+from app.settings import Ending
 
 COMPLETE = {
     "researchers": "The Goalguess team",
     "contact": "study@example.org",
-    "codes": '{"completed": "DONE1"}',
+    "codes": json.dumps(dict.fromkeys(get_args(Ending), "DONE1")),
 }
 """Without these, the server says at each start what is not set."""
 

@@ -70,8 +70,12 @@ class Browser:
         page = self.get(path)
         return dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
 
-    def consent(self, query: str = "") -> Response:
-        return self.post("/consent", {**self.hidden_fields(f"/{query}"), "decision": "yes"})
+    def consent(self, query: str = "", decision: str = "yes") -> Response:
+        return self.post("/consent", {**self.consent_form(query), "decision": decision})
+
+    def consent_form(self, query: str = "") -> dict[str, str]:
+        """The hidden fields of one showing of the consent form."""
+        return self.hidden_fields(f"/{query}")
 
     def go_on_here(self, query: str) -> Response:
         """Open the link in this browser, and press the button."""

@@ -18,6 +18,10 @@ def tour(page: Page) -> Iterator[str]:
     yield "no consent"
     page.goto("/nowhere")
     yield "error"
+    page.goto("/?PROLIFIC_PID=null")
+    yield "link not filled in"
+    page.goto("/no-consent?preview=1")
+    yield "no consent, as a preview"
     page.goto("/?preview=1")
     yield "consent, as a preview"
     page.goto(LINK.format("5f1e0c2a9b3d4e6f7a8b9c01"))
