@@ -6,7 +6,7 @@ Functions take an open connection and plain values, and apply no rules.
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, func, select
 from sqlalchemy.dialects.sqlite import insert
 
 from app.repository import Record, now
@@ -60,6 +60,28 @@ def tally(connection: Connection, name: str) -> None:
             index_elements=["name"], set_={"count": tallies.c.count + 1}
         )
     )
+
+
+def count_participants(connection: Connection) -> dict[str, int]:
+    """How many participants there are of whom something is kept, by stream."""
+    people = (
+        select(participants.c.stream, func.count())
+        # Of who withdrew this is not known any more.
+        .where(participants.c.consented_at.is_not(None))
+        .group_by(participants.c.stream)
+    )
+    return {row[0]: row[1] for row in connection.execute(people)}
+
+
+def count_answers(connection: Connection, stream: str) -> int:
+    """How many trials the participants of a stream have answered."""
+    answered = (
+        select(func.count())
+        .select_from(trials)
+        .join(participants, participants.c.id == trials.c.participant_id)
+        .where(participants.c.stream == stream, trials.c.answered_at.is_not(None))
+    )
+    return connection.scalar(answered) or 0
 
 
 def all_studies(connection: Connection) -> dict[str, Any]:

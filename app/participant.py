@@ -194,7 +194,7 @@ async def withdraw(request: Request) -> Response:
     # Without a session it has been done already: the button was pressed twice.
     with suppress(NoSession):
         await at.database.write(lambda c: enrolment.withdraw(c, at.study, token))
-        at.database.forget_deleted()
+        await at.database.forget_deleted()
     response = see("/withdrawn")
     response.headers["Clear-Site-Data"] = '"cookies", "storage"'
     return response

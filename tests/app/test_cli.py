@@ -41,6 +41,8 @@ def test_the_commands_of_all_three_packages_are_one_command():
         "serve",
         "simulate",
         "export",
+        "backup",
+        "restore",
         "solve",
         "stimuli",
         "compare",
