@@ -123,6 +123,8 @@ class Database:
             self._commit_together([waiting for waiting in group if waiting])
             if self._to_empty and not self._lost:
                 self._empty_log()
+        with suppress(DatabaseUnavailable):
+            self._expect_files()
 
     def _next_group(self) -> list[_Waiting | None]:
         """Wait for a write, then take whatever else is waiting; ends with None on close."""
@@ -161,7 +163,7 @@ class Database:
 
     def _expect_files(self) -> None:
         """DatabaseUnavailable, now and ever after, if the files are not those that were opened."""
-        trouble = self._in_use.trouble()
+        trouble = None if self._lost else self._in_use.trouble()
         if trouble is None:
             return
         self._lost = f"{trouble} while the study ran: nothing is stored or read until it restarts"
