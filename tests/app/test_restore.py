@@ -50,10 +50,11 @@ def test_a_backup_takes_the_place_without_who_withdrew_since(study, file, backup
 
 
 def test_what_was_replaced_is_kept_and_opens(study, backup):
-    restored = restore(study, backup, unseen)
-    assert restored.replaced.name.startswith("study.sqlite.replaced-2")
-    assert restored.replaced.stat().st_mode & 0o777 == 0o600
-    assert answers_in(restored.replaced) == 4
+    replaced = restore(study, backup, unseen).replaced
+    assert replaced
+    assert replaced.name.startswith("study.sqlite.replaced-2")
+    assert replaced.stat().st_mode & 0o777 == 0o600
+    assert answers_in(replaced) == 4
 
 
 def test_the_log_of_a_killed_server_is_kept_with_its_database_and_not_used(
@@ -67,20 +68,22 @@ def test_the_log_of_a_killed_server_is_kept_with_its_database_and_not_used(
             one.unlink()
     for one in killed.parent.iterdir():
         shutil.copy(one, file.parent)
-    restored = restore(study, backup, unseen)
+    replaced = restore(study, backup, unseen).replaced
     names = {one.name for one in file.parent.iterdir()}
     assert not {"study.sqlite-wal", "study.sqlite-shm"} & names
     assert answers_in(file) == 3
-    assert answers_in(restored.replaced) == 9
+    assert replaced
+    assert answers_in(replaced) == 9
 
 
 def test_a_stale_log_beside_nothing_is_put_aside_too(study, file, backup):
     file.unlink()
     log = file.with_name("study.sqlite-wal")
     log.write_text("of some other database")
-    restored = restore(study, backup, unseen)
+    replaced = restore(study, backup, unseen).replaced
+    assert replaced
     assert not log.exists()
-    kept = restored.replaced.with_name(f"{restored.replaced.name}-wal")
+    kept = replaced.with_name(f"{replaced.name}-wal")
     assert kept.read_text() == "of some other database"
     assert answers_in(file) == 3
 
