@@ -29,7 +29,12 @@ def copy_database(file: Path, to: Path, progress: Progress | None = None) -> Non
     """
     expect_database(file)
     with refusals(file), _reading(file) as source:
-        write_copy(source, to, progress)
+        try:
+            write_copy(source, to, progress)
+        except sqlite3.OperationalError as error:
+            if primary_code(error) != sqlite3.SQLITE_FULL:
+                raise
+            raise DatabaseUnavailable(f"{file}: its copy has no room on the disk") from error
     found = damage(to)
     if found:
         raise DatabaseUnavailable(f"{file}: it is damaged ({found})")

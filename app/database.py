@@ -23,7 +23,7 @@ from sqlalchemy import URL, Connection
 
 from app.copying import write_copy
 from app.database_files import FilesInUse, dated, identity, make_private
-from app.errors import DatabaseUnavailable
+from app.errors import AppError, DatabaseUnavailable
 from app.sqlite import file_of, in_turn, refusal_of, refusals, run_pragma, sqlite_engine
 
 T = TypeVar("T")
@@ -175,8 +175,10 @@ class Database:
         copy = dated(self._file.absolute(), "rescued")
         try:
             write_copy(_driver(self._writer), copy)
-        except (OSError, sqlite3.Error) as error:
-            return f"Put the files back and start again; they could not be copied ({error})."
+        except (AppError, OSError, sqlite3.Error) as error:
+            copy.unlink(missing_ok=True)
+            reason = refusal_of(error, copy) or error
+            return f"Put the files back and start again; no copy could be made ({reason})."
         return (
             f"All that was acknowledged is in {copy}: stop the server, run goalguess restore "
             f"{copy}, and start it again. Pages keep what is answered until then."

@@ -3,11 +3,12 @@
 import sqlite3
 from contextlib import closing
 from threading import Event, Thread
+from unittest.mock import Mock
 
 import pytest
 
 from app.backup import back_up
-from app.errors import AppError, DatabaseMismatch, InvalidInput
+from app.errors import DatabaseMismatch, DatabaseUnavailable, InvalidInput
 from app.study import PREVIEW
 from tests.app.stored import answers_in, take_part
 from tests.app.test_cli import run
@@ -101,10 +102,19 @@ def test_what_is_no_study_is_not_backed_up_and_nothing_is_left(tmp_path, source,
         other.execute("CREATE TABLE recipes (name TEXT)")
     folder = tmp_path / "backups"
     folder.mkdir()
-    with pytest.raises(DatabaseMismatch, match=message) as refused:
+    with pytest.raises(DatabaseMismatch, match=message):
         back_up(tmp_path / source, folder / "backup.sqlite", unseen)
-    assert isinstance(refused.value, AppError)
     assert list(folder.iterdir()) == []
+
+
+def test_a_disk_without_room_for_the_copy_is_told_and_nothing_is_left(file, tmp_path, monkeypatch):
+    full = sqlite3.OperationalError("database or disk is full")
+    full.sqlite_errorcode = sqlite3.SQLITE_FULL
+    monkeypatch.setattr("app.copying.write_copy", Mock(side_effect=full))
+    before = set(tmp_path.iterdir())
+    with pytest.raises(DatabaseUnavailable, match=r"study\.sqlite: its copy has no room"):
+        back_up(file, tmp_path / "backup.sqlite", unseen)
+    assert set(tmp_path.iterdir()) == before
 
 
 def test_the_command_says_what_is_in_it_and_what_is_not(database, study, file, tmp_path):

@@ -88,6 +88,19 @@ def test_all_that_was_acknowledged_is_in_the_rescued_copy(lost, settings):
     assert rescued.stat().st_mode & 0o777 == 0o600
 
 
+def test_a_folder_that_is_gone_is_told_with_what_to_do(settings, tmp_path, caplog):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    shutil.move(settings.database_file, folder)
+    database = Database(f"sqlite:///{folder}/study.sqlite")
+    folder.rename(tmp_path / "elsewhere")
+    with pytest.raises(DatabaseUnavailable):
+        database.submit(add("later")).result()
+    database.close()
+    (said,) = caplog.messages
+    assert "Put the files back and start again; no copy could be made" in said
+
+
 @pytest.mark.parametrize("lost", [move], indirect=True)
 def test_files_put_back_hold_all_that_was_acknowledged(lost, settings):
     with pytest.raises(DatabaseUnavailable):
