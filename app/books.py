@@ -75,6 +75,28 @@ def take_back_no(connection: Connection, arrival: str) -> bool:
     return connection.execute(delete(declined).where(declined.c.arrival == arrival)).rowcount == 1
 
 
+def count_participants(connection: Connection) -> dict[str, int]:
+    """How many participants there are of whom something is kept, by stream."""
+    people = (
+        select(participants.c.stream, func.count())
+        # Of who withdrew this is not known any more.
+        .where(participants.c.consented_at.is_not(None))
+        .group_by(participants.c.stream)
+    )
+    return {row[0]: row[1] for row in connection.execute(people)}
+
+
+def count_answers(connection: Connection, stream: str) -> int:
+    """How many trials the participants of a stream have answered."""
+    answered = (
+        select(func.count())
+        .select_from(trials)
+        .join(participants, participants.c.id == trials.c.participant_id)
+        .where(participants.c.stream == stream, trials.c.answered_at.is_not(None))
+    )
+    return connection.scalar(answered) or 0
+
+
 def all_studies(connection: Connection) -> dict[str, Any]:
     """Every definition of the study this database was used with, by its hash."""
     return {row.hash: row.definition for row in connection.execute(select(studies))}

@@ -1,14 +1,14 @@
 """The command `goalguess`: the study's own commands beside those of policies and analysis."""
 
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from analysis import commands as analysis_commands
-from app import people_cli
+from app.backup_cli import commands as backup_commands
 from app.bots.kinds import DEFAULT_MIX, Kind, read_mix
+from app.people_cli import commands as people_commands
 from policies import commands as policies_commands
 
 commands = typer.Typer(
@@ -20,7 +20,8 @@ commands = typer.Typer(
 )
 commands.add_typer(policies_commands)
 commands.add_typer(analysis_commands)
-commands.add_typer(people_cli.commands)
+commands.add_typer(backup_commands)
+commands.add_typer(people_commands)
 
 
 @commands.command()
@@ -38,29 +39,32 @@ def serve(
     import uvicorn
 
     from app.main import create_app
-    from app.opening import open_database
+    from app.opening import open_database, start_line, start_warnings
     from app.recruits import people_without_id
     from app.settings import load_settings
     from app.study import load_study
 
     settings = load_settings()
+    study = load_study(settings)
+    is_new = not settings.database_file.exists()
     # What can go wrong is tried first, so that it is told in one line: the file and the port.
-    with closing(open_database(load_study(settings))) as database:
+    with closing(open_database(study)) as database:
+        answers = start_line(study, is_new, database)
         without_id = database.read_now(people_without_id)
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.create_server((host, port), family=family) as listener:
         server = uvicorn.Server(
             uvicorn.Config(create_app(settings), log_level="warning", ws="none")
         )
-        typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
+        typer.echo(f"{answers} Stop with Ctrl+C.")
         shown = f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{listener.getsockname()[1]}/"
         typer.echo(f"The study is at {address}")
         typer.echo(f"To try it without leaving data: {address}?preview=1")
         for gap in settings.gaps:
             typer.echo(f"Not set: {gap}", err=True)
-        if without_id:
-            typer.echo(without_id, err=True)
+        for warning in filter(None, (*start_warnings(study), without_id)):
+            typer.echo(warning, err=True)
         server.run(sockets=[listener])
 
 
@@ -102,41 +106,6 @@ def simulate(
         outcomes = run(bots, url or settings, at_once, lambda _outcome: progress.advance(task))
     typer.echo(summary(outcomes))
     typer.echo("goalguess export --simulated --to DIR writes what they left.", err=True)
-
-
-@commands.command()
-def export(
-    to: Annotated[Path, typer.Option(help="Folder to write to; made if need be.")],
-    simulated: Annotated[
-        bool, typer.Option("--simulated", help="Also simulated and preview participants.")
-    ] = False,
-) -> None:
-    """Write trials, participants, events (CSV, JSON lines, Parquet) and the code book.
-
-    Example: goalguess export --to results
-    """
-    from app.errors import DatabaseMismatch
-    from app.export import export as write_export
-    from app.opening import open_database
-    from app.settings import load_settings
-    from app.study import load_study
-
-    settings = load_settings()
-    if not settings.database_file.exists():
-        raise DatabaseMismatch(
-            f"{settings.database_file}: expected a database with answers, found no such file; "
-            "GOALGUESS_DATABASE_URL names it"
-        )
-    study = load_study(settings)
-    database = open_database(study)
-    try:
-        done = write_export(database, study, to, simulated)
-    finally:
-        database.close()
-    rows = ", ".join(f"{count} {name}" for name, count in done.rows.items())
-    typer.echo(f"{to}: {rows}; codebook.md says what each column means.")
-    if done.pilots_left_out:
-        typer.echo(f"{done.pilots_left_out} pilots left out; --simulated includes them.")
 
 
 def main() -> None:

@@ -11,6 +11,7 @@ from sqlalchemy import Connection
 
 from app import books, repository
 from app.assignment import deal_block
+from app.database_files import append_privately
 from app.errors import CLOSED_TO_WITHDRAWAL, NotProven, StudyClosed
 from app.event_log import note
 from app.questions import CONTROL_RIGHT
@@ -129,7 +130,7 @@ def withdraw_recruited(connection: Connection, study: Study, recruiter_id: str) 
 def withdraw_participant(connection: Connection, study: Study, participant: Record) -> None:
     """Delete all that is known of a participant, and note it outside the database."""
     # Noted before the commit: a withdrawal that is half done is done at the next start.
-    with study.settings.withdrawals_file.open("a", encoding="ascii") as journal:
+    with append_privately(study.settings.withdrawals_file) as journal:
         # On a line of its own even if a crash cut the last one short.
         journal.write(f"\n{participant.pseudonym}\n")
         journal.flush()
@@ -137,15 +138,18 @@ def withdraw_participant(connection: Connection, study: Study, participant: Reco
     _forget(connection, participant)
 
 
-def withdraw_again(connection: Connection, study: Study) -> None:
-    """Drop those who withdrew from a database that was restored from an older backup."""
-    with study.settings.withdrawals_file.open("a+", encoding="ascii", errors="replace") as journal:
-        journal.seek(0)
-        pseudonyms = journal.read().split()
-    for pseudonym in pseudonyms:
+def withdraw_again(connection: Connection, study: Study) -> int:
+    """Drop those who withdrew from a database that was restored; how many were still in it."""
+    listed = study.settings.withdrawals_file
+    if not listed.exists():
+        return 0
+    dropped = 0
+    for pseudonym in listed.read_text(encoding="ascii", errors="replace").split():
         participant = repository.participant_named(connection, pseudonym)
         if participant and participant.step != Step.WITHDRAWN:
             _forget(connection, participant)
+            dropped += 1
+    return dropped
 
 
 def _go_on(connection: Connection, study: Study, participant: Record, happening: Happening) -> Step:

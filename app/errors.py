@@ -14,6 +14,7 @@ AppError (carries an HTTP status and a code; one handler renders it as page or J
 ├── TooLarge           413  the request is larger than any page of ours sends
 ├── ForeignOrigin      403  a POST that did not come from our own pages
 ├── DatabaseMismatch   500  a database that this version must not open
+├── DatabaseUnavailable 503 the database cannot store or read just now
 └── DealingFailed      500  no balanced list could be drawn from the pool
 """
 
@@ -23,6 +24,11 @@ class AppError(Exception):
 
     status = 500
     code = "error"
+
+    @property
+    def shown(self) -> str:
+        """What participants read of it."""
+        return str(self)
 
 
 class NoSession(AppError):
@@ -134,6 +140,20 @@ class ForeignOrigin(AppError):
 
 class DatabaseMismatch(AppError):
     """A database that this version must not open."""
+
+
+class DatabaseUnavailable(AppError):
+    """The database cannot store or read just now: locked, lost, full, damaged, read-only.
+
+    The message, for who runs the study, names file and reason; participants read `shown`.
+    """
+
+    status = 503
+    code = "unavailable"
+    shown = (
+        "The study cannot store anything just now. Please load this page again in a moment: "
+        "what you did is kept, and sent again."
+    )
 
 
 class DealingFailed(AppError):

@@ -19,7 +19,15 @@ from app.deps import (
     see,
     way_on,
 )
-from app.errors import AppError, BadLink, Moved, OtherParticipant, StudyClosed, WrongStep
+from app.errors import (
+    AppError,
+    BadLink,
+    DatabaseUnavailable,
+    Moved,
+    OtherParticipant,
+    StudyClosed,
+    WrongStep,
+)
 from app.opening import open_database
 from app.pages import Pages, static_app
 from app.security import HEADERS, OwnPagesOnly, SecurityHeaders
@@ -27,6 +35,9 @@ from app.settings import Settings
 from app.study import load_study
 
 log = logging.getLogger("goalguess")
+
+RETRY_AFTER_S = 5
+"""When a browser may try again while the database is unavailable."""
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -64,8 +75,17 @@ def render_error(request: Request, error: Exception) -> Response:
     """The one place where errors become replies: a page, or JSON for the trial page."""
     if not isinstance(error, AppError):
         raise error
+    if isinstance(error, DatabaseUnavailable):
+        log.error("%s", error)
+        reply = _render(request, error)
+        reply.headers["Retry-After"] = str(RETRY_AFTER_S)
+        return reply
+    return _render(request, error)
+
+
+def _render(request: Request, error: AppError) -> Response:
     if request.url.path.startswith("/api/"):
-        content = {"error": {"code": error.code, "message": str(error)}}
+        content = {"error": {"code": error.code, "message": error.shown}}
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
         return see(error.path if isinstance(error, AtAnotherStep) else OWN_PAGE)
@@ -77,7 +97,7 @@ def render_error(request: Request, error: Exception) -> Response:
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
     if isinstance(error, BadLink):
         return page(request, "bad_link.html", {"message": str(error)}, status=error.status)
-    context = {"status": error.status, "message": str(error), "way_on": way_on(request, error)}
+    context = {"status": error.status, "message": error.shown, "way_on": way_on(request, error)}
     return page(request, "error.html", context, status=error.status)
 
 

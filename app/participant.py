@@ -222,7 +222,7 @@ async def withdraw(request: Request) -> Response:
         stream = await at.database.write(
             lambda c: enrolment.withdraw(c, at.study, token, form.get(WHOSE))
         )
-        at.database.forget_deleted()
+        await at.database.forget_deleted()
     response = see(_of_stream("/withdrawn", stream))
     response.headers["Clear-Site-Data"] = '"cookies", "storage"'
     return response

@@ -1,14 +1,11 @@
 """Commands about people by their recruiter's id: who is to be paid, who asks to be deleted."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 if TYPE_CHECKING:  # the command line reads this file for its help, and must answer fast
-    from app.database import Database
     from app.study import Study
 
 commands = typer.Typer()
@@ -26,10 +23,12 @@ def recruits(
 
     Example: goalguess recruits --csv to-be-paid.csv
     """
+    from app.backup import snapshot
     from app.recruits import as_csv, as_table, people_without_id, write_private
     from app.recruits import recruits as find_recruits
 
-    with _study_in_use() as (study, database):
+    study = _study_in_use()
+    with snapshot(study) as database:
         people = database.read_now(lambda connection: find_recruits(connection, study))
         without_id = database.read_now(people_without_id)
     if csv:
@@ -55,40 +54,33 @@ def withdraw(
 
     Example: goalguess withdraw --recruiter-id 5f1e0c2a9b3d4e6f7a8b9c0d
     """
+    import asyncio
+    from contextlib import closing
+
     from app.enrolment import withdraw_recruited
     from app.errors import InvalidInput
+    from app.opening import open_database
     from app.recruiter_ids import trimmed
 
-    with _study_in_use() as (study, database):
-        wanted = trimmed(recruiter_id)
+    study, wanted = _study_in_use(), trimmed(recruiter_id)
+    with closing(open_database(study)) as database:
         count = database.submit(lambda c: withdraw_recruited(c, study, wanted)).result()
         if not count:
             raise InvalidInput(
                 "--recruiter-id: expected an id that is stored in "
                 f"{study.settings.database_file}, found nobody with this one"
             )
-        database.forget_deleted()
+        asyncio.run(database.forget_deleted())
     people = "1 participant" if count == 1 else f"{count} participants"
     typer.echo(f"{people} withdrawn: all that was known of them is deleted.")
 
 
-@contextmanager
-def _study_in_use() -> "Iterator[tuple[Study, Database]]":
-    """The study of the settings and its database, which must exist."""
-    from app.errors import DatabaseMismatch
-    from app.opening import open_database
+def _study_in_use() -> "Study":
+    """The study of the settings; its database must exist."""
+    from app.database_files import expect_database
     from app.settings import load_settings
     from app.study import load_study
 
     settings = load_settings()
-    if not settings.database_file.exists():
-        raise DatabaseMismatch(
-            f"{settings.database_file}: expected a database with answers, found no such file; "
-            "GOALGUESS_DATABASE_URL names it"
-        )
-    study = load_study(settings)
-    database = open_database(study)
-    try:
-        yield study, database
-    finally:
-        database.close()
+    expect_database(settings.database_file, "GOALGUESS_DATABASE_URL")
+    return load_study(settings)

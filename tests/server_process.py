@@ -38,8 +38,7 @@ class ServerProcess:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        self._process.terminate()
-        self._ended()
+        self.stop()
 
     @property
     def url(self) -> str:
@@ -60,6 +59,11 @@ class ServerProcess:
         assert self._process.stdout
         announced = (re.search(r"http://[^:]+:(\d+)/", line) for line in self._process.stdout)
         self.port = next(int(found[1]) for found in announced if found)
+
+    def stop(self) -> None:
+        """End it as Ctrl+C does."""
+        self._process.terminate()
+        self._ended()
 
     def kill(self) -> None:
         """End it as a crash does: nothing is finished, nothing is said."""

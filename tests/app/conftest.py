@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from httpx2 import Response
+from httpx2 import Client, Response
 from sqlalchemy import Select, Table, select
 from starlette.testclient import TestClient
 
@@ -52,7 +52,7 @@ def database(study: Study) -> Iterator[Database]:
 class Browser:
     """A participant's browser: keeps cookies, sends what our pages send."""
 
-    def __init__(self, client: TestClient) -> None:
+    def __init__(self, client: Client) -> None:
         self.client = client
 
     def get(self, path: str) -> Response:

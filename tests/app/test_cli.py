@@ -43,6 +43,8 @@ def test_the_commands_of_all_three_packages_are_one_command():
         "export",
         "recruits",
         "withdraw",
+        "backup",
+        "restore",
         "solve",
         "stimuli",
         "compare",
