@@ -188,7 +188,10 @@ PARTICIPANTS = Table(
             "refresh_rate_hz", NUMBER, "Refresh rate of the screen.", "Hz", above=0, nullable=True
         ),
         Column(
-            "pointer_type", TEXT, "How the page is pointed at: mouse, touch, pen.", nullable=True
+            "pointer_type",
+            TEXT,
+            "How the page is used: mouse, touch, pen, keyboard or other.",
+            nullable=True,
         ),
         _SIMULATED,
         _PREVIEW,

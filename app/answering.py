@@ -11,11 +11,11 @@ from sqlalchemy import Connection
 
 from analysis import correct, score
 from app import VERSION, repository
-from app.errors import InvalidInput, PlaceReturned, WrongStep
+from app.errors import InvalidInput, NoSuchTrial, PlaceReturned, WrongStep
 from app.event_log import log_message, note
 from app.repository import Record
-from app.schemas import Answered, Logged, Message, Played, Stopped
-from app.sessions import admitted, hashed
+from app.schemas import ENVELOPE, Answered, Logged, Message, Played, Stopped
+from app.sessions import admitted, hashed, prove
 from app.steps import Happening, Phase, Step, advance
 from app.study import Study
 from policies import Stimulus
@@ -26,7 +26,8 @@ class Standing:
     """Where a participant is in the trials.
 
     `ticket` says, to nobody but us, which dealing of which place this is, at which speed; a trial
-    that was begun keeps the speed it was begun with.
+    that was begun keeps the speed it was begun with. `press_ms` is the stop as the page sent it,
+    by which it knows it until it is loaded again.
     """
 
     index: int
@@ -37,6 +38,7 @@ class Standing:
     lead_in_ms: int
     position_ms: float = 0
     stop_time_ms: float | None = None
+    press_ms: float | None = None
 
     @property
     def length_ms(self) -> int:
@@ -67,9 +69,14 @@ class TrialScore:
     score: float
 
 
-def participant_at_trial(connection: Connection, token: str | None) -> Record:
-    """The participant of a session, with their place and the trial they played last."""
-    return admitted(repository.participant_at_trial(connection, hashed(token)))
+def participant_at_trial(
+    connection: Connection, token: str | None, page: str | None = None
+) -> Record:
+    """The participant of a session, with their place and the trial they played last.
+
+    Refused as in `sessions.participant_of`.
+    """
+    return admitted(repository.participant_at_trial(connection, hashed(token)), page)
 
 
 def standing(study: Study, participant: Record) -> Standing:
@@ -89,6 +96,7 @@ def standing(study: Study, participant: Record) -> Standing:
         lead_in_ms=participant.lead_in_ms,
         position_ms=participant.position_ms,
         stop_time_ms=participant.stop_time_ms,
+        press_ms=participant.press_ms,
     )
 
 
@@ -117,8 +125,10 @@ def played(
             length_ms=at.length_ms,
             lead_in_ms=at.lead_in_ms,
             played_at=repository.now(),
+            played_waited_ms=message.waited_ms,
             position_ms=0.0,
             reduced_motion=message.device.reduced_motion,
+            times_clamped=bool(message.mended),
         )
 
     return _once(connection, study, token, index, message, Phase.READY, begin)
@@ -130,14 +140,21 @@ def stopped(
     """The motion ended, by Stop or by itself: the stop time is final."""
 
     def keep_stop(participant: Record, at: Standing) -> None:
-        stop_ms, length_ms = message.stop_time_ms, at.length_ms
-        if stop_ms > length_ms:
-            raise InvalidInput(f"stop_time_ms: expected from 0 to {length_ms}, came {stop_ms}")
-        if message.reached_end and stop_ms != length_ms:
-            raise InvalidInput(f"stop_time_ms: expected {length_ms} at the end, came {stop_ms}")
-        facts = message.model_dump(exclude={"key", "events"})
+        stop_ms = stop_time_ms(message, at.length_ms)
+        facts = message.model_dump(exclude=ENVELOPE | {"stop_time_ms", "reached_end"})
         repository.change_trial(
-            connection, participant.id, index, stopped_at=repository.now(), **facts
+            connection,
+            participant.id,
+            index,
+            stopped_at=repository.now(),
+            stopped_waited_ms=message.waited_ms,
+            stop_time_ms=stop_ms,
+            reached_end=stop_ms == at.length_ms,
+            press_ms=message.stop_time_ms,
+            times_clamped=bool(
+                participant.times_clamped or message.mended or stop_ms != message.stop_time_ms
+            ),
+            **facts,
         )
 
     return _once(connection, study, token, index, message, Phase.MOVING, keep_stop)
@@ -152,10 +169,13 @@ def answered(
         letters = [area.letter for area in study.pool.scenes[at.stimulus.maze].areas]
         if message.guess not in letters:
             raise InvalidInput(f"guess: expected one of {letters}, came {message.guess!r}")
-        facts = message.model_dump(exclude={"key", "events", "stop_time_ms"})
+        facts = message.model_dump(exclude=ENVELOPE | {"stop_time_ms"})
+        if message.mended:
+            facts["times_clamped"] = True
         repository.change_trial(
             connection, participant.id, index, answered_at=repository.now(), **facts
         )
+        prove(connection, participant)
         if index == study.trials:
             answers = repository.count_answers(connection, participant.id)
             assert answers == study.trials, f"{answers} answers after the last trial"
@@ -165,7 +185,7 @@ def answered(
             )
 
     def is_of_this_stop(at: Standing) -> bool:
-        return message.stop_time_ms == at.stop_time_ms
+        return message.stop_time_ms in (at.stop_time_ms, at.press_ms)
 
     return _once(
         connection, study, token, index, message, Phase.ASKING, keep_answer, is_of_this_stop
@@ -174,8 +194,10 @@ def answered(
 
 def logged(connection: Connection, study: Study, token: str | None, message: Logged) -> None:
     """Events that no answer carries, and how far a trial that is broken off was seen."""
-    participant = participant_at_trial(connection, token)
+    participant = participant_at_trial(connection, token, message.participant)
     index = message.trial_index
+    if index is not None:
+        require_trial(study, index)
     this = index is not None and index == participant.trial_index
     stimulus = participant.stimulus if this else None
     log_message(connection, study, participant, index, stimulus, message)
@@ -183,6 +205,36 @@ def logged(connection: Connection, study: Study, token: str | None, message: Log
         seen = min(message.position_ms, participant.length_ms)
         if seen > participant.position_ms:
             repository.change_trial(connection, participant.id, index, position_ms=seen)
+
+
+def played_elsewhere(
+    connection: Connection, study: Study, token: str | None, index: int, message: Played
+) -> None:
+    """Note that a browser which the participant has left had begun a trial, and says so late.
+
+    It may have shown the animation before the newer browser did, for which it began anew.
+    """
+    participant = repository.participant_in_session(connection, hashed(token))
+    if participant is not None and message.participant in (None, participant.pseudonym):
+        details = {"waited_ms": message.waited_ms}
+        note(connection, study, participant, "played_elsewhere", details, index)
+
+
+def require_trial(study: Study, index: int) -> None:
+    """NoSuchTrial unless the study has a trial of this number."""
+    if not 1 <= index <= study.trials:
+        raise NoSuchTrial(f"Expected a trial from 1 to {study.trials}.")
+
+
+def stop_time_ms(message: Stopped, length_ms: float) -> float:
+    """Where the motion had been seen to be at the press, ms: nothing is seen before it is drawn.
+
+    The press's position, at most one usual frame after the last frame drawn, at most the length.
+    """
+    bounds = [message.stop_time_ms, length_ms]
+    if message.last_frame_ms is not None:
+        bounds.append(message.last_frame_ms + (message.frame_interval_ms or 0))
+    return float(min(bounds))
 
 
 def scores(connection: Connection, study: Study, participant: Record) -> list[TrialScore]:
@@ -214,6 +266,9 @@ def _ready(study: Study, participant: Record, index: int) -> Standing:
 
 
 def _ticket(participant: Record, step_ms: int, lead_in_ms: int) -> str:
+    if participant.ticket:
+        return f"{participant.ticket}-{step_ms}-{lead_in_ms}"
+    # Dealt before tickets were drawn at random: pages that wait for Play hold this one.
     place = (participant.pseudonym, participant.number, participant.dealt_at.isoformat())
     return sha256(repr((*place, step_ms, lead_in_ms)).encode()).hexdigest()[:16]
 
@@ -232,7 +287,8 @@ def _once(
 
     The events that came with it are kept in any case, unless it is refused.
     """
-    participant = participant_at_trial(connection, token)
+    require_trial(study, index)
+    participant = participant_at_trial(connection, token, message.participant)
     if participant.step == Step.COMPLETED:
         log_message(connection, study, participant, index, None, message)
         return Reply(repeated=True, done=True, standing=None)

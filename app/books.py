@@ -3,19 +3,21 @@
 Functions take an open connection and plain values, and apply no rules.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, delete, exists, func, select
 from sqlalchemy.dialects.sqlite import insert
 
 from app.repository import Record, now
 from app.tables import (
+    declined,
     demographics,
     events,
     participants,
     places,
     randomisation,
+    recruits,
     studies,
     tallies,
     trials,
@@ -52,14 +54,47 @@ def drawn_from(connection: Connection) -> Record:
     return connection.execute(select(randomisation)).one()
 
 
-def tally(connection: Connection, name: str) -> None:
-    """Count one more of something, without saying of whom."""
-    statement = insert(tallies).values(name=name, count=1)
+def tally(connection: Connection, name: str, more: int = 1) -> None:
+    """Count one more of something, or one less, without saying of whom."""
+    statement = insert(tallies).values(name=name, count=more)
     connection.execute(
         statement.on_conflict_do_update(
-            index_elements=["name"], set_={"count": tallies.c.count + 1}
+            index_elements=["name"], set_={"count": tallies.c.count + more}
         )
     )
+
+
+def note_no(connection: Connection, arrival: str) -> bool:
+    """Note that a showing of the consent form was answered with no; False if it was already."""
+    noted = connection.execute(insert(declined).values(arrival=arrival).on_conflict_do_nothing())
+    return noted.rowcount == 1
+
+
+def take_back_no(connection: Connection, arrival: str) -> bool:
+    """Forget that a showing of the consent form was answered with no; False if it was not."""
+    return connection.execute(delete(declined).where(declined.c.arrival == arrival)).rowcount == 1
+
+
+def count_participants(connection: Connection) -> dict[str, int]:
+    """How many participants there are of whom something is kept, by stream."""
+    people = (
+        select(participants.c.stream, func.count())
+        # Of who withdrew this is not known any more.
+        .where(participants.c.consented_at.is_not(None))
+        .group_by(participants.c.stream)
+    )
+    return {row[0]: row[1] for row in connection.execute(people)}
+
+
+def count_answers(connection: Connection, stream: str) -> int:
+    """How many trials the participants of a stream have answered."""
+    answered = (
+        select(func.count())
+        .select_from(trials)
+        .join(participants, participants.c.id == trials.c.participant_id)
+        .where(participants.c.stream == stream, trials.c.answered_at.is_not(None))
+    )
+    return connection.scalar(answered) or 0
 
 
 def all_studies(connection: Connection) -> dict[str, Any]:
@@ -70,6 +105,37 @@ def all_studies(connection: Connection) -> dict[str, Any]:
 def all_tallies(connection: Connection) -> dict[str, int]:
     """The anonymous counts, by name."""
     return {row[0]: row[1] for row in connection.execute(select(tallies))}
+
+
+def all_recruits(connection: Connection, stream: str) -> Iterable[Record]:
+    """The recruiter's ids of a stream with their participants, in order of arrival."""
+    return connection.execute(
+        select(
+            recruits, participants.c.step, participants.c.consented_at, participants.c.finished_at
+        )
+        .join(participants, participants.c.id == recruits.c.participant_id)
+        .where(recruits.c.stream == stream)
+        .order_by(participants.c.id)
+    )
+
+
+def everybody_recruited_as(connection: Connection, recruiter_id: str) -> Sequence[Record]:
+    """The participants of all streams with a recruiter's id, stored with blanks or without."""
+    return connection.execute(
+        select(participants)
+        .join(recruits, recruits.c.participant_id == participants.c.id)
+        .where(func.trim(recruits.c.recruiter_id) == recruiter_id)
+        .order_by(participants.c.id)
+    ).all()
+
+
+def count_without_id(connection: Connection, stream: str) -> int:
+    """How many of a stream came without a recruiter's id, of those that still have any."""
+    has_id = exists().where(recruits.c.participant_id == participants.c.id)
+    counted = select(func.count()).where(
+        participants.c.stream == stream, participants.c.consented_at.is_not(None), ~has_id
+    )
+    return connection.scalar(counted) or 0
 
 
 def all_trials(connection: Connection) -> Iterable[Record]:

@@ -1,12 +1,13 @@
 """The command `goalguess`: the study's own commands beside those of policies and analysis."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from analysis import commands as analysis_commands
+from app.backup_cli import commands as backup_commands
 from app.bots.kinds import DEFAULT_MIX, Kind, read_mix
+from app.people_cli import commands as people_commands
 from app.serve_cli import commands as serve_commands
 from policies import commands as policies_commands
 
@@ -20,6 +21,8 @@ commands = typer.Typer(
 commands.add_typer(serve_commands)
 commands.add_typer(policies_commands)
 commands.add_typer(analysis_commands)
+commands.add_typer(backup_commands)
+commands.add_typer(people_commands)
 
 
 @commands.command()
@@ -60,41 +63,6 @@ def simulate(
         outcomes = run(bots, url or settings, at_once, lambda _outcome: progress.advance(task))
     typer.echo(summary(outcomes))
     typer.echo("goalguess export --simulated --to DIR writes what they left.", err=True)
-
-
-@commands.command()
-def export(
-    to: Annotated[Path, typer.Option(help="Folder to write to; made if need be.")],
-    simulated: Annotated[
-        bool, typer.Option("--simulated", help="Also simulated and preview participants.")
-    ] = False,
-) -> None:
-    """Write trials, participants, events (CSV, JSON lines, Parquet) and the code book.
-
-    Example: goalguess export --to results
-    """
-    from app.errors import DatabaseMismatch
-    from app.export import export as write_export
-    from app.opening import open_database
-    from app.settings import load_settings
-    from app.study import load_study
-
-    settings = load_settings()
-    if not settings.database_file.exists():
-        raise DatabaseMismatch(
-            f"{settings.database_file}: expected a database with answers, found no such file; "
-            "GOALGUESS_DATABASE_URL names it"
-        )
-    study = load_study(settings)
-    database = open_database(study)
-    try:
-        done = write_export(database, study, to, simulated)
-    finally:
-        database.close()
-    rows = ", ".join(f"{count} {name}" for name, count in done.rows.items())
-    typer.echo(f"{to}: {rows}; codebook.md says what each column means.")
-    if done.pilots_left_out:
-        typer.echo(f"{done.pilots_left_out} pilots left out; --simulated includes them.")
 
 
 def main() -> None:

@@ -1,24 +1,29 @@
 """What routes share: the services of an app, the session's cookie, replies."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from fastapi import Request
 from fastapi.responses import HTMLResponse, RedirectResponse
 from starlette.responses import Response
 from starlette.types import Receive, Scope, Send
 
+from app import repository
+from app.arrival import stream_of
 from app.database import Database
-from app.errors import TooMany, WrongStep
+from app.errors import NoSession, TooMany, WrongStep
 from app.limits import Moderation
 from app.pages import Pages
+from app.recruiter_ids import PARAMETERS
 from app.repository import Record
-from app.root_path import root_path
-from app.sessions import participant_of
+from app.root_path import own_path, root_path
+from app.sessions import hashed, participant_of
 from app.settings import Ending
 from app.steps import ENDINGS, Step, may_withdraw
-from app.study import PREVIEW, Study
+from app.study import PILOTS, Study
 
 COOKIE = "goalguess_session"
 COOKIE_SECONDS = 90 * 24 * 3600
@@ -65,18 +70,21 @@ def token_of(request: Request) -> str | None:
     return request.cookies.get(COOKIE)
 
 
-async def participant_at(request: Request, *steps: Step) -> Record:
-    """The participant, who must be at one of the steps; AtAnotherStep leads to theirs."""
+async def participant_at(request: Request, *steps: Step, whose: str | None = None) -> Record:
+    """The participant, who must be at one of the steps; AtAnotherStep leads to theirs.
+
+    `whose`: as the page says it, see `sessions.participant_of`.
+    """
     token = token_of(request)
     participant = await services(request).database.read(
-        lambda connection: participant_of(connection, token)
+        lambda connection: participant_of(connection, token, whose)
     )
     if participant.step not in steps:
         raise AtAnotherStep(Step(participant.step))
     return participant
 
 
-async def in_moderation(request: Request) -> None:
+def require_moderation(request: Request) -> None:
     """Let somebody begin; TooMany when many have just begun from their network."""
     wait_s = services(request).consents.wait_s(request.client.host if request.client else None)
     if wait_s:
@@ -96,18 +104,70 @@ def page(
         template,
         context or {},
         participant=participant.pseudonym if participant else None,
-        preview=participant is not None and participant.stream == PREVIEW,
+        pilot=pilot_of(request, participant),
         can_withdraw=participant is not None
         and may_withdraw(Step(participant.step), at.study.settings.study_open),
         status=status,
     )
 
 
-def recruiter(request: Request, ending: Ending) -> dict[str, str | None]:
-    """The way back to the recruiter from an ending, where it has a code."""
+def pilot_of(request: Request, participant: Record | None = None) -> str | None:
+    """The stream of a pilot, as their row, the request's link or its session tells; else None."""
+    if participant is not None:
+        streams = [participant.stream]
+    else:
+        streams = [stream_of(_link_values(request)), getattr(request.state, "stream", None)]
+    return next((stream for stream in streams if stream in PILOTS), None)
+
+
+def recognise(request: Request) -> None:
+    """Note the stream of the browser's session, if it has one, for pages that need none."""
+    token = token_of(request)
+    if token is None:
+        return
+    known = services(request).database.read_now(
+        lambda connection: repository.participant_in_session(connection, hashed(token))
+    )
+    if known is not None:
+        request.state.stream = known.stream
+
+
+def recruiter(
+    request: Request, ending: Ending, participant: Record | None = None
+) -> dict[str, str | bool | None]:
+    """The way back to the recruiter from an ending, where it has a code.
+
+    Pilots are shown only that there is one: a code of theirs would be somebody's pay.
+    """
     settings = services(request).study.settings
-    code = settings.codes.get(ending)
-    return {"code": code, "url": settings.return_url.replace("{code}", code) if code else None}
+    code = settings.codes.get(ending) or None
+    pilot = pilot_of(request, participant) is not None
+    return {
+        "code": None if pilot else code,
+        "url": settings.return_url.replace("{code}", code) if code and not pilot else None,
+        "stands_for_code": pilot and code is not None,
+    }
+
+
+def way_on(request: Request, error: Exception) -> str | None:
+    """Where an error page can lead without making a second person of one; None: nowhere.
+
+    That is the invitation, if the request has it, or the participant's own page.
+    """
+    values = _link_values(request)
+    kept = {name: values[name] for name in (*PARAMETERS, *PILOTS) if values.get(name)}
+    if kept:
+        return f"/?{urlencode(kept)}"
+    if own_path(request.scope) in ("", "/") or "arrival" in values:
+        return "/"
+    has_session = token_of(request) is not None and not isinstance(error, NoSession)
+    return OWN_PAGE if has_session else None
+
+
+def _link_values(request: Request) -> Mapping[str, str]:
+    """What this request carries of an invitation link: in the consent form or in its query."""
+    values: Mapping[str, str] = getattr(request.state, "form", request.query_params)
+    return values
 
 
 class _Elsewhere(RedirectResponse):

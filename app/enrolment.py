@@ -11,11 +11,12 @@ from sqlalchemy import Connection
 
 from app import books, repository
 from app.assignment import deal_block
-from app.errors import CLOSED_TO_WITHDRAWAL, StudyClosed
+from app.database_files import append_privately
+from app.errors import CLOSED_TO_WITHDRAWAL, NotProven, StudyClosed
 from app.event_log import note
 from app.questions import CONTROL_RIGHT
 from app.repository import Record
-from app.sessions import participant_of
+from app.sessions import participant_of, prove
 from app.steps import ENDINGS, Happening, Step, advance, judge_control, may_withdraw
 from app.study import Study
 
@@ -24,31 +25,41 @@ def describe(
     connection: Connection,
     study: Study,
     token: str | None,
+    page: str | None,
     answers: Mapping[str, str | int | None],
 ) -> None:
     """Keep what a participant said about themselves and go on."""
-    participant = participant_of(connection, token)
+    participant = participant_of(connection, token, page)
     _go_on(connection, study, participant, Happening.DESCRIBED)
+    prove(connection, participant)
     repository.add_demographics(connection, participant.id, answers)
 
 
-def finish_instructions(connection: Connection, study: Study, token: str | None) -> None:
+def finish_instructions(
+    connection: Connection, study: Study, token: str | None, page: str | None = None
+) -> None:
     """Go on from the instructions to the practice."""
-    _go_on(connection, study, participant_of(connection, token), Happening.INSTRUCTED)
+    _go_on(connection, study, participant_of(connection, token, page), Happening.INSTRUCTED)
 
 
 def answer_control(
-    connection: Connection, study: Study, token: str | None, attempt: int, answer: str | int | None
+    connection: Connection,
+    study: Study,
+    token: str | None,
+    page: str | None,
+    attempt: int,
+    answer: str | int | None,
 ) -> Step:
     """Judge an attempt at the control question; who passes is dealt a place with it.
 
     Returns the step that follows. An attempt that is not the one due was sent twice, and is not
     judged again.
     """
-    participant = participant_of(connection, token)
+    participant = participant_of(connection, token, page)
     if participant.step != Step.PRACTICE or attempt != participant.control_tries + 1:
         return Step(participant.step)
     repository.change_participant(connection, participant.id, control_tries=attempt)
+    prove(connection, participant)
     told = {"answer": answer, "attempt": attempt}
     note(connection, study, participant, "control_answered", told)
     outcome = judge_control(answer == CONTROL_RIGHT, attempt)
@@ -64,9 +75,11 @@ def has_place(connection: Connection, participant: Record) -> bool:
     return repository.place_of(connection, participant.id) is not None
 
 
-def deal_again(connection: Connection, study: Study, token: str | None) -> None:
+def deal_again(
+    connection: Connection, study: Study, token: str | None, page: str | None = None
+) -> None:
     """Deal a place to a participant at the trials whose place went to somebody else."""
-    participant = participant_of(connection, token)
+    participant = participant_of(connection, token, page)
     if participant.step == Step.TRIALS and not has_place(connection, participant):
         deal(connection, study, participant)
 
@@ -82,20 +95,42 @@ def deal(connection: Connection, study: Study, participant: Record) -> None:
     note(connection, study, participant, "dealt", {"place": place})
 
 
-def fail(connection: Connection, study: Study, token: str | None) -> None:
+def fail(connection: Connection, study: Study, token: str | None, page: str | None = None) -> None:
     """End for a participant for whom the study does not work technically."""
-    participant = participant_of(connection, token)
+    participant = participant_of(connection, token, page)
     _go_on(connection, study, participant, Happening.BROKE)
     repository.free_unplayed_place_of(connection, participant.id)
 
 
-def withdraw(connection: Connection, study: Study, token: str | None) -> None:
-    """Delete all that is known of a participant, and note it outside the database."""
-    participant = participant_of(connection, token)
+def withdraw(
+    connection: Connection, study: Study, token: str | None, page: str | None = None
+) -> str:
+    """Withdraw the participant of a session, if they may; returns their stream.
+
+    NotProven in a browser that may be somebody else's.
+    """
+    participant = participant_of(connection, token, page)
+    if not participant.proven:
+        raise NotProven
     if not may_withdraw(Step(participant.step), study.settings.study_open):
         raise StudyClosed(CLOSED_TO_WITHDRAWAL)
+    withdraw_participant(connection, study, participant)
+    stream: str = participant.stream
+    return stream
+
+
+def withdraw_recruited(connection: Connection, study: Study, recruiter_id: str) -> int:
+    """Withdraw everybody with a recruiter's id, at whatever step; returns how many there were."""
+    found = books.everybody_recruited_as(connection, recruiter_id)
+    for participant in found:
+        withdraw_participant(connection, study, participant)
+    return len(found)
+
+
+def withdraw_participant(connection: Connection, study: Study, participant: Record) -> None:
+    """Delete all that is known of a participant, and note it outside the database."""
     # Noted before the commit: a withdrawal that is half done is done at the next start.
-    with study.settings.withdrawals_file.open("a", encoding="ascii") as journal:
+    with append_privately(study.settings.withdrawals_file) as journal:
         # On a line of its own even if a crash cut the last one short.
         journal.write(f"\n{participant.pseudonym}\n")
         journal.flush()
@@ -103,15 +138,18 @@ def withdraw(connection: Connection, study: Study, token: str | None) -> None:
     _forget(connection, participant)
 
 
-def withdraw_again(connection: Connection, study: Study) -> None:
-    """Drop those who withdrew from a database that was restored from an older backup."""
-    with study.settings.withdrawals_file.open("a+", encoding="ascii", errors="replace") as journal:
-        journal.seek(0)
-        pseudonyms = journal.read().split()
-    for pseudonym in pseudonyms:
+def withdraw_again(connection: Connection, study: Study) -> int:
+    """Drop those who withdrew from a database that was restored; how many were still in it."""
+    listed = study.settings.withdrawals_file
+    if not listed.exists():
+        return 0
+    dropped = 0
+    for pseudonym in listed.read_text(encoding="ascii", errors="replace").split():
         participant = repository.participant_named(connection, pseudonym)
         if participant and participant.step != Step.WITHDRAWN:
             _forget(connection, participant)
+            dropped += 1
+    return dropped
 
 
 def _go_on(connection: Connection, study: Study, participant: Record, happening: Happening) -> Step:

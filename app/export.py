@@ -23,6 +23,7 @@ from app.answering import score_trial
 from app.database import Database
 from app.quality import alike, first_decision_s, never_moved_pointer, times_s
 from app.repository import Record
+from app.schemas import pointer_type
 from app.steps import ON_THE_WAY, Happening, Step
 from app.study import PREVIEW, SIMULATED, Study
 
@@ -145,7 +146,7 @@ def _participants(connection: Connection, trials: list[Row], events: list[Row]) 
             "viewport_height": record.viewport_height,
             "pixel_ratio": record.pixel_ratio,
             "refresh_rate_hz": record.refresh_rate_hz,
-            "pointer_type": record.pointer_type,
+            "pointer_type": pointer_type(record.pointer_type),
             "consent_hash": record.consent_hash,
             **_marks(record),
         }

@@ -10,8 +10,25 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from app import VERSION, health, participant, trials_api
-from app.deps import OWN_PAGE, AtAnotherStep, Services, as_json, page, see
-from app.errors import AppError, Moved, StudyClosed, TooMany, WrongStep
+from app.deps import (
+    OWN_PAGE,
+    AtAnotherStep,
+    Services,
+    as_json,
+    page,
+    recognise,
+    see,
+    way_on,
+)
+from app.errors import (
+    AppError,
+    BadLink,
+    DatabaseUnavailable,
+    Moved,
+    OtherParticipant,
+    StudyClosed,
+    WrongStep,
+)
 from app.limits import Moderation
 from app.opening import open_database
 from app.pages import Pages, static_app
@@ -65,20 +82,30 @@ def render_error(request: Request, error: Exception) -> Response:
     """The one place where errors become replies: a page, or JSON for the trial page."""
     if not isinstance(error, AppError):
         raise error
+    if isinstance(error, DatabaseUnavailable):
+        log.error("%s", error)
+    reply = _render(request, error)
+    if error.retry_after_s is not None:
+        reply.headers["Retry-After"] = str(error.retry_after_s)
+    return reply
+
+
+def _render(request: Request, error: AppError) -> Response:
     if own_path(request.scope).startswith("/api/"):
-        content = {"error": {"code": error.code, "message": str(error)}}
+        content = {"error": {"code": error.code, "message": error.shown}}
         return as_json(content, error.status)
     if isinstance(error, WrongStep):
         return see(error.path if isinstance(error, AtAnotherStep) else OWN_PAGE)
-    if isinstance(error, Moved):
-        return page(request, "moved.html", status=error.status)
+    if error.status < 500:
+        recognise(request)
+    if isinstance(error, Moved | OtherParticipant):
+        return page(request, f"{error.code}.html", status=error.status)
     if isinstance(error, StudyClosed):
         return page(request, "closed.html", {"message": str(error)}, status=error.status)
-    context = {"status": error.status, "message": str(error)}
-    reply = page(request, "error.html", context, status=error.status)
-    if isinstance(error, TooMany):
-        reply.headers["Retry-After"] = str(error.wait_s)
-    return reply
+    if isinstance(error, BadLink):
+        return page(request, "bad_link.html", {"message": str(error)}, status=error.status)
+    context = {"status": error.status, "message": error.shown, "way_on": way_on(request, error)}
+    return page(request, "error.html", context, status=error.status)
 
 
 def _nobody_there(_request: Request, _error: Exception) -> Response:

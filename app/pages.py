@@ -50,13 +50,16 @@ class Pages:
         template: str,
         context: Mapping[str, Any],
         participant: str | None = None,
-        preview: bool = False,
+        pilot: str | None = None,
         can_withdraw: bool = False,
         status: int = 200,
     ) -> HTMLResponse:
-        """A page; `participant` is the pseudonym that keys what the browser stores."""
+        """A page; `participant` is the pseudonym that keys what the browser stores.
+
+        `pilot` is the stream of a pilot, to whom every page says that they are one.
+        """
         html = self._templates.get_template(template).render(
-            participant=participant, preview=preview, can_withdraw=can_withdraw, **context
+            participant=participant, pilot=pilot, can_withdraw=can_withdraw, **context
         )
         return HTMLResponse(html, status, headers={"Cache-Control": "no-store"})
 

@@ -4,21 +4,22 @@ import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
+from urllib.parse import urlencode
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from fastapi.routing import APIRoute
 
-from app import answering, arrival, enrolment
+from app import answering, arrival, enrolment, repository
 from app.answering import TrialScore
-from app.arrival import Link
+from app.arrival import Link, read_arrival, stream_of
 from app.deps import (
     PATHS,
     forget_browser,
-    in_moderation,
     page,
     participant_at,
     recruiter,
+    require_moderation,
     see,
     services,
     token_of,
@@ -28,11 +29,14 @@ from app.errors import (
     CLOSED_TO_WITHDRAWAL,
     InvalidInput,
     NoSession,
+    NotProven,
     StudyClosed,
 )
 from app.questions import ABOUT_YOU, CONTROL, answers
+from app.recruiter_ids import warn_of
+from app.repository import Record
 from app.steps import ENDINGS, Step, may_withdraw
-from app.study import Study
+from app.study import PARTICIPANT, Study
 
 
 class _Page(APIRoute):
@@ -47,6 +51,9 @@ class _Page(APIRoute):
 router = APIRouter(include_in_schema=False, route_class=_Page)
 
 BEST_SCORE_OF_TRIAL = 10
+WHOSE = "participant"
+"""The hidden field by which each form says whose page it is on."""
+OTHER_INVITATION = "other-invitation"
 
 
 @router.get("/")
@@ -58,31 +65,49 @@ async def arrive(request: Request) -> Response:
     if known is None and not at.study.settings.study_open:
         raise StudyClosed(CLOSED_TO_ARRIVALS)
     if known is None:
+        if link.misnamed and link.recruiter_id is None:
+            warn_of(link.misnamed)
+        link.require_of_newcomer(at.study.settings.require_id)
         fields = {**link.fields(), "arrival": secrets.token_urlsafe(16)}
         return page(request, "consent.html", {"consent": at.study.consent, "link": fields})
-    path = PATHS[Step(known.participant.step)]
-    if not known.moves:
-        return see(path)
-    agent = _user_agent(request)
-    token = await at.database.write(lambda c: arrival.come_back(c, at.study, known, agent))
-    return see(path, token, secure=request.url.scheme == "https")
+    step = Step(known.participant.step)
+    if known.elsewhere:
+        context = {"link": link.fields(), "ended": step in ENDINGS}
+        return page(request, "go_on_here.html", context)
+    return see(_path(step, known.same_invitation))
 
 
-@router.post("/consent", dependencies=[Depends(in_moderation)])
+@router.post("/go-on")
+async def go_on(request: Request) -> Response:
+    """The button by which whoever opened their link in another browser goes on there."""
+    link, agent = Link.read(await _form(request)), _user_agent(request)
+    at, old_token = services(request), token_of(request)
+    gone_on = await at.database.write(
+        lambda c: arrival.go_on_here(c, at.study, link, old_token, agent)
+    )
+    if gone_on is None:
+        return see(f"/?{urlencode(link.fields())}")
+    step, token = gone_on
+    return see(_path(step), token, secure=request.url.scheme == "https")
+
+
+@router.post("/consent")
 async def consent(request: Request) -> Response:
     """Yes makes the participant; no is only counted."""
-    form = await _form(request)
+    form = request.state.form = await _form(request)
+    require_moderation(request)
     at, old_token, agent = services(request), token_of(request), _user_agent(request)
-    link = Link.read(form)
-    if form.get("decision") != "yes":
-        await at.database.write(lambda c: arrival.decline(c, link))
-        return see("/no-consent")
-    nonce = form.get("arrival", "")
-    if not 16 <= len(nonce) <= 64:
-        raise InvalidInput("arrival: expected the hidden field of the consent page.")
+    link, nonce, decision = Link.read(form), read_arrival(form), form.get("decision")
+    if decision not in ("yes", "no"):
+        raise InvalidInput("decision: expected yes or no, by a button of the consent page.")
+    if decision == "no":
+        out = await at.database.write(lambda c: arrival.decline(c, nonce, link, old_token))
+        return see(_of_stream("/no-consent", link.stream) if out else "/withdraw")
     token = await at.database.write(
         lambda c: arrival.consent(c, at.study, nonce, link, old_token, agent)
     )
+    if token is None:
+        return see(f"/?{urlencode(link.fields())}")
     return see("/about-you", token, secure=request.url.scheme == "https")
 
 
@@ -103,14 +128,14 @@ async def about_you(request: Request) -> Response:
 @router.post("/about-you")
 async def describe(request: Request) -> Response:
     """Answers to them; what is wrong is shown again beside what was right."""
-    participant = await participant_at(request, Step.ABOUT_YOU)
     form = await _form(request)
+    participant = await participant_at(request, Step.ABOUT_YOU, whose=form.get(WHOSE))
     given, errors = answers(ABOUT_YOU, form)
     if errors:
         context = {"questions": ABOUT_YOU, "answers": form, "errors": errors}
         return page(request, "about_you.html", context, participant, status=422)
-    at, token = services(request), token_of(request)
-    await at.database.write(lambda c: enrolment.describe(c, at.study, token, given))
+    at, token, whose = services(request), token_of(request), form.get(WHOSE)
+    await at.database.write(lambda c: enrolment.describe(c, at.study, token, whose, given))
     return see("/instructions")
 
 
@@ -124,8 +149,8 @@ async def instructions(request: Request) -> Response:
 @router.post("/instructions")
 async def finish_instructions(request: Request) -> Response:
     """Read and understood."""
-    at, token = services(request), token_of(request)
-    await at.database.write(lambda c: enrolment.finish_instructions(c, at.study, token))
+    at, token, whose = services(request), token_of(request), (await _form(request)).get(WHOSE)
+    await at.database.write(lambda c: enrolment.finish_instructions(c, at.study, token, whose))
     return see("/practice")
 
 
@@ -145,33 +170,32 @@ async def practice(request: Request) -> Response:
 async def answer_control(request: Request) -> Response:
     """The answer to the control question."""
     form = await _form(request)
-    at, token = services(request), token_of(request)
+    at, token, whose = services(request), token_of(request), form.get(WHOSE)
     try:
         attempt, answer = int(form.get("attempt", "")), CONTROL.answer(form)
     except ValueError:
         return see("/practice")
     step = await at.database.write(
-        lambda c: enrolment.answer_control(c, at.study, token, attempt, answer)
+        lambda c: enrolment.answer_control(c, at.study, token, whose, attempt, answer)
     )
     return see(PATHS[step])
 
 
 @router.get("/trial")
 async def trial(request: Request) -> Response:
-    """The page that runs all trials; whoever lost their place is dealt a new one."""
+    """The page that runs all trials."""
     participant = await participant_at(request, Step.TRIALS)
-    at, token = services(request), token_of(request)
-    placed = await at.database.read(lambda c: enrolment.has_place(c, participant))
-    if not placed:
-        await at.database.write(lambda c: enrolment.deal_again(c, at.study, token))
-    return page(request, "trial.html", {"dealt_again": not placed}, participant)
+    return page(request, "trial.html", participant=participant)
 
 
 @router.get("/end")
 async def end(request: Request) -> Response:
-    """The page of how it ended."""
+    """The page of how it ended; its code is for the invitation with which it was reached."""
     participant = await participant_at(request, *ENDINGS)
-    context: dict[str, object] = {"recruiter": recruiter(request, participant.step)}
+    own = OTHER_INVITATION not in request.query_params and await _may_see_code(request, participant)
+    context: dict[str, object] = {
+        "recruiter": recruiter(request, participant.step, participant) if own else None
+    }
     if participant.step == Step.COMPLETED:
         study = services(request).study
         scores = await services(request).database.read(
@@ -188,8 +212,8 @@ async def end(request: Request) -> Response:
 @router.post("/failed")
 async def fail(request: Request) -> Response:
     """The study does not work for this participant."""
-    at, token = services(request), token_of(request)
-    await at.database.write(lambda c: enrolment.fail(c, at.study, token))
+    at, token, whose = services(request), token_of(request), (await _form(request)).get(WHOSE)
+    await at.database.write(lambda c: enrolment.fail(c, at.study, token, whose))
     return see("/end")
 
 
@@ -197,6 +221,8 @@ async def fail(request: Request) -> Response:
 async def confirm_withdrawal(request: Request) -> Response:
     """What withdrawing means, before it is done."""
     participant = await participant_at(request, *Step)
+    if not participant.proven:
+        raise NotProven
     if not may_withdraw(Step(participant.step), services(request).study.settings.study_open):
         raise StudyClosed(CLOSED_TO_WITHDRAWAL)
     return page(request, "withdraw.html", participant=participant)
@@ -205,12 +231,15 @@ async def confirm_withdrawal(request: Request) -> Response:
 @router.post("/withdraw")
 async def withdraw(request: Request) -> Response:
     """Delete everything about the participant and forget the browser."""
-    at, token = services(request), token_of(request)
+    form, at, token = await _form(request), services(request), token_of(request)
+    stream = stream_of(form)
     # Without a session it has been done already: the button was pressed twice.
     with suppress(NoSession):
-        await at.database.write(lambda c: enrolment.withdraw(c, at.study, token))
-        at.database.forget_deleted()
-    response = see("/withdrawn")
+        stream = await at.database.write(
+            lambda c: enrolment.withdraw(c, at.study, token, form.get(WHOSE))
+        )
+        await at.database.forget_deleted()
+    response = see(_of_stream("/withdrawn", stream))
     forget_browser(request, response)
     return response
 
@@ -221,8 +250,28 @@ async def withdrawn(request: Request) -> Response:
     return page(request, "withdrawn.html", {"recruiter": recruiter(request, "withdrawn")})
 
 
+def _path(step: Step, same_invitation: bool = True) -> str:
+    """Where a step's page is; its ending gives no code to another invitation."""
+    hidden = step in ENDINGS and not same_invitation
+    return f"{PATHS[step]}?{OTHER_INVITATION}" if hidden else PATHS[step]
+
+
+async def _may_see_code(request: Request, participant: Record) -> bool:
+    if participant.proven:
+        return True
+    recruit = await services(request).database.read(
+        lambda c: repository.recruit_of(c, participant.id)
+    )
+    return recruit is None or recruit.recruiter_session is None
+
+
 def _user_agent(request: Request) -> str:
     return request.headers.get("user-agent", "")[:400]
+
+
+def _of_stream(path: str, stream: str) -> str:
+    """The address of a page that knows no session, by which it still knows a pilot."""
+    return path if stream == PARTICIPANT else f"{path}?{stream}=1"
 
 
 async def _form(request: Request) -> dict[str, str]:

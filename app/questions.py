@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from app.plain_text import is_blank, problem_of
+
 WITHHELD = "prefer not to say"
-LONGEST_TEXT = 60
 
 
 @dataclass(frozen=True)
@@ -35,16 +36,20 @@ class Question:
     def answer(self, form: Mapping[str, str]) -> str | int | None:
         """The answer in a form; None for a number withheld; ValueError says what was expected."""
         given = form.get(self.name, "").strip()
-        if form.get(f"{self.name}_withheld") or given == WITHHELD:
+        answered = not is_blank(given)
+        withheld = bool(form.get(f"{self.name}_withheld"))
+        if answered and withheld and given != WITHHELD:
+            raise ValueError("Please either answer or choose “prefer not to say”, not both.")
+        if withheld or given == WITHHELD:
             return None if self.kind == "number" else WITHHELD
-        if not given:
+        if not answered:
             raise ValueError(self.required_message)
         if self.kind == "number":
             return self._number(given)
         if self.kind == "choice" and given not in {option.value for option in self.options}:
             raise ValueError("Please choose one of the answers shown.")
-        if len(given) > LONGEST_TEXT or not given.isprintable():
-            raise ValueError(f"Please use at most {LONGEST_TEXT} characters, on one line.")
+        if problem := problem_of(given):
+            raise ValueError(problem)
         return given
 
     def _number(self, given: str) -> int:

@@ -4,6 +4,7 @@ Functions take an open connection and plain values, and apply no rules. Statemen
 everybody are built once: building one takes longer than running it.
 """
 
+import secrets
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from functools import lru_cache
@@ -34,14 +35,14 @@ def now() -> datetime:
 
 
 _IN_SESSION = (
-    select(participants, sessions.c.current)
+    select(participants, sessions.c.current, sessions.c.proven)
     .join(sessions, sessions.c.participant_id == participants.c.id)
     .where(sessions.c.token_hash == bindparam("token_hash"))
 )
 
 
 def participant_in_session(connection: Connection, token_hash: str) -> Record | None:
-    """The participant of a session, with `current`: whether it is still the newest one."""
+    """The participant of a session, with whether it is `current` and `proven`."""
     return connection.execute(_IN_SESSION, {"token_hash": token_hash}).one_or_none()
 
 
@@ -87,11 +88,29 @@ _END_SESSIONS = (
 )
 
 
-def begin_session(connection: Connection, participant_id: int, token_hash: str) -> None:
+def begin_session(
+    connection: Connection, participant_id: int, token_hash: str, proven: bool
+) -> None:
     """Make this the participant's current session; older ones stay, to be told so."""
     connection.execute(_END_SESSIONS, {"of": participant_id})
-    session = {"token_hash": token_hash, "current": True, "began_at": now()}
+    session = {"token_hash": token_hash, "current": True, "began_at": now(), "proven": proven}
     connection.execute(insert(sessions), {"participant_id": participant_id, **session})
+
+
+def prove_session(connection: Connection, participant_id: int) -> None:
+    """Note that the participant's current browser has shown to be theirs."""
+    connection.execute(
+        update(sessions)
+        .where(sessions.c.participant_id == participant_id, sessions.c.current)
+        .values(proven=True)
+    )
+
+
+def recruit_of(connection: Connection, participant_id: int) -> Record | None:
+    """The recruiter's ids of a participant who came with some."""
+    return connection.execute(
+        select(recruits).where(recruits.c.participant_id == participant_id)
+    ).one_or_none()
 
 
 @lru_cache
@@ -141,7 +160,9 @@ _lowest_free = (
 _GIVE_FREE_PLACE = (
     update(places)
     .where(places.c.stream == bindparam("of"), places.c.number == _lowest_free)
-    .values(participant_id=bindparam("to"), dealt_at=bindparam("at"))
+    .values(
+        participant_id=bindparam("to"), dealt_at=bindparam("at"), ticket=bindparam("with_ticket")
+    )
     .returning(places.c.number)
 )
 
@@ -149,6 +170,7 @@ _GIVE_FREE_PLACE = (
 def give_free_place(connection: Connection, stream: str, participant_id: int) -> int | None:
     """Deal the lowest free number, so those given back first; None when there is none."""
     dealing = {"of": stream, "to": participant_id, "at": now()}
+    dealing["with_ticket"] = secrets.token_hex(8)
     number: int | None = connection.scalar(_GIVE_FREE_PLACE, dealing)
     return number
 
@@ -173,7 +195,7 @@ _FREE_UNPLAYED = (
         places.c.played_at.is_(None),
         places.c.dealt_at < bindparam("before"),
     )
-    .values(participant_id=None, dealt_at=None)
+    .values(participant_id=None, dealt_at=None, ticket=None)
 )
 
 
@@ -187,7 +209,7 @@ def free_unplayed_place_of(connection: Connection, participant_id: int) -> None:
     connection.execute(
         update(places)
         .where(places.c.participant_id == participant_id, places.c.played_at.is_(None))
-        .values(participant_id=None, dealt_at=None)
+        .values(participant_id=None, dealt_at=None, ticket=None)
     )
 
 
@@ -212,6 +234,8 @@ _AT_TRIAL = (
         places.c.scenarios,
         places.c.number,
         places.c.dealt_at,
+        places.c.ticket,
+        sessions.c.proven,
         *(
             column
             for column in _last.c
@@ -296,5 +320,16 @@ _LOG = insert(events).on_conflict_do_nothing()
 
 def log(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
     """Append events; those of a message that was logged before are left out."""
-    if rows:
-        connection.execute(_LOG, list(rows))
+    connection.execute(_LOG, list(rows))
+
+
+_COUNT_EVENTS = (
+    select(func.count())
+    .select_from(events)
+    .where(events.c.participant_id == bindparam("participant_id"))
+)
+
+
+def count_events(connection: Connection, participant_id: int) -> int:
+    """How many events a participant's log has."""
+    return connection.scalar(_COUNT_EVENTS, {"participant_id": participant_id}) or 0

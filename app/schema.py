@@ -2,30 +2,35 @@
 
 from pathlib import Path
 
-from sqlalchemy import Connection, inspect, text
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy import URL, Connection, inspect, text
 
-from app.database import sqlite_engine
+from app.database_files import make_private
 from app.errors import DatabaseMismatch
+from app.sqlite import file_of, refusals, sqlite_engine, url_of
 
 HEAD = "0003"
 """Revision that this version works with; a test holds it equal to the newest migration."""
 
 
-def prepare(url: str, name: str) -> None:
+def prepare(url: str | URL, name: str) -> None:
     """Bring a database up to date; DatabaseMismatch, and nothing touched, if it can't be ours."""
+    make_private(file_of(url))
     engine = sqlite_engine(url, begin="BEGIN IMMEDIATE")
     try:
-        with engine.connect() as connection, connection.begin():
+        with refusals(name), engine.connect() as connection, connection.begin():
             found = _revision(connection, name)
             if found != HEAD:
                 _upgrade(connection, found, name)
-    except DBAPIError as error:
-        raise DatabaseMismatch(
-            f"{name}: expected a SQLite database in a folder that exists: {error.orig}"
-        ) from error
     finally:
         engine.dispose()
+
+
+def expect_ours(file: Path, name: str) -> None:
+    """DatabaseMismatch unless some version of Goalguess has made the database."""
+    engine = sqlite_engine(url_of(file), begin="BEGIN")
+    with refusals(name), engine.connect() as connection, connection.begin():
+        if _revision(connection, name) is None:
+            raise DatabaseMismatch(f"{name}: expected a database with answers, found an empty one")
 
 
 def _revision(connection: Connection, name: str) -> str | None:

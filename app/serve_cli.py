@@ -24,26 +24,35 @@ def serve(
 
     Example: GOALGUESS_DATABASE_URL=sqlite:///study.sqlite goalguess serve --port 8000
     """
+    from contextlib import closing
+
     import uvicorn
 
     from app.main import create_app
-    from app.opening import open_database
+    from app.opening import open_database, start_line, start_warnings
+    from app.recruits import people_without_id
     from app.serving import StudyConfig
     from app.settings import load_settings
     from app.study import load_study
 
     settings = load_settings()
     app = create_app(settings)
+    study = load_study(settings)
+    is_new = not settings.database_file.exists()
     # What can go wrong is tried first, so that it is told in one line: the file and the port.
-    open_database(load_study(settings)).close()
+    with closing(open_database(study)) as database:
+        answers = start_line(study, is_new, database)
+        without_id = database.read_now(people_without_id)
     with _listen(host, port) as listener:
-        typer.echo(f"Answers go to {settings.database_file}. Stop with Ctrl+C.")
+        typer.echo(f"{answers} Stop with Ctrl+C.")
         shown = f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{listener.getsockname()[1]}{settings.root_path}/"
         typer.echo(f"The study is at {address}")
         typer.echo(f"To try it without leaving data: {address}?preview=1")
         for gap in settings.gaps:
             typer.echo(f"Not set: {gap}", err=True)
+        for warning in filter(None, (*start_warnings(study), without_id)):
+            typer.echo(warning, err=True)
         uvicorn.Server(StudyConfig(app, settings)).run(sockets=[listener])
 
 

@@ -22,6 +22,17 @@ CODES_EXAMPLE = '{"completed": "C1A2B3"}'
 Ending = Literal["completed", "no_consent", "screened_out", "failed", "withdrawn"]
 
 
+_WITHOUT_CODE: dict[Ending, str] = {
+    "completed": "recruited participants get no completion code, and are asked to message you",
+    "no_consent": "whoever does not agree is asked to return their submission, without a link",
+    "screened_out": "whoever fails the control question is asked to return their submission, "
+    "without a link",
+    "failed": "whoever the study does not work for is asked to message you",
+    "withdrawn": "whoever withdraws is asked to return their submission, without a link",
+}
+"""What participants meet at an ending that has no code."""
+
+
 class Settings(BaseSettings):
     """All settings with their defaults; a test holds README's table equal to them."""
 
@@ -37,6 +48,10 @@ class Settings(BaseSettings):
     )
     study_open: bool = Field(
         True, description="Whether new participants may begin, and finished ones still withdraw."
+    )
+    require_id: bool = Field(
+        False,
+        description="Whether participants need a recruiter's id in their link; pilots need none.",
     )
     researchers: str = Field("", description="Who runs the study, as the consent page says it.")
     contact: str = Field("", description="How participants reach the researchers.")
@@ -64,7 +79,7 @@ class Settings(BaseSettings):
     codes: dict[Ending, str] = Field(
         {},
         description="Recruiter's code of each ending, as JSON: completed, no_consent, "
-        "screened_out, failed, withdrawn. An ending without a code shows none.",
+        "screened_out, failed, withdrawn. An ending without a code says what to do instead.",
     )
 
     root_path: str = Field(
@@ -132,7 +147,10 @@ class Settings(BaseSettings):
         needed = {
             "RESEARCHERS": (self.researchers, "the consent page names nobody"),
             "CONTACT": (self.contact, "participants cannot reach you"),
-            "CODES": (self.codes.get("completed"), "recruited participants get no completion code"),
+            **{
+                f"CODES, {ending}": (self.codes.get(ending), lack)
+                for ending, lack in _WITHOUT_CODE.items()
+            },
         }
         return [f"{PREFIX}{name} ({lack})" for name, (value, lack) in needed.items() if not value]
 

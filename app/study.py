@@ -26,6 +26,8 @@ AREA_STYLES = {
 PARTICIPANT, PREVIEW, SIMULATED = "participant", "preview", "simulated"
 """Streams: real participants and the two kinds of pilots, dealt and exported apart."""
 
+PILOTS = (PREVIEW, SIMULATED)
+
 
 @dataclass(frozen=True)
 class Section:

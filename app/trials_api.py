@@ -13,11 +13,11 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from app import answering
+from app import answering, enrolment
 from app.answering import Reply, Standing
 from app.deps import PATHS, as_json, participant_at, services, token_of
-from app.errors import InvalidInput
-from app.schemas import Answered, Logged, Message, Played, Stopped
+from app.errors import InvalidInput, Moved, NoSuchTrial
+from app.schemas import Answered, Logged, Message, Played, Stopped, read_message
 from app.steps import Step
 from app.study import Study
 from policies import Stimulus
@@ -36,15 +36,20 @@ async def practice(request: Request) -> Response:
 
 async def trial(request: Request) -> Response:
     """The trial the participant is at."""
-    token, at = token_of(request), services(request)
-
-    def find(connection: Connection) -> Standing | None:
-        participant = answering.participant_at_trial(connection, token)
-        if participant.step != Step.TRIALS:
-            return None
-        return answering.standing(at.study, participant)
-
+    find, at = _find(request), services(request)
     return as_json(_state(at.study, await at.database.read(find)))
+
+
+async def place(request: Request) -> Response:
+    """A new place for whoever lost theirs; then the trial they are at."""
+    find, at = _find(request), services(request)
+    token, page = token_of(request), request.query_params.get("participant")
+
+    def deal_and_find(connection: Connection) -> Standing | None:
+        enrolment.deal_again(connection, at.study, token, page)
+        return find(connection)
+
+    return as_json(_state(at.study, await at.database.write(deal_and_find)))
 
 
 async def log(request: Request) -> Response:
@@ -58,13 +63,21 @@ def _route(moment: str, model: type[M], happen: "Happen[M]") -> Route:
     """The route to which the page sends one moment of a trial."""
 
     async def endpoint(request: Request) -> Response:
-        message, at, token = await _message(request, model), services(request), token_of(request)
-        index = request.path_params["index"]
-        reply = await at.database.write(lambda c: happen(c, at.study, token, index, message))
+        index, at, token = _index(request), services(request), token_of(request)
+        message = await _message(request, model)
+        try:
+            reply = await at.database.write(lambda c: happen(c, at.study, token, index, message))
+        except Moved:
+            if isinstance(message, Played):
+                played = message
+                await at.database.write(
+                    lambda c: answering.played_elsewhere(c, at.study, token, index, played)
+                )
+            raise
         state = _state(at.study, reply.standing)
         return as_json({"repeated": reply.repeated, **state, "next": _END if reply.done else None})
 
-    return Route(f"/api/trials/{{index:int}}/{moment}", endpoint, methods=["POST"])
+    return Route(f"/api/trials/{{index}}/{moment}", endpoint, methods=["POST"])
 
 
 _END = PATHS[Step.COMPLETED]
@@ -72,6 +85,7 @@ _END = PATHS[Step.COMPLETED]
 routes = [
     Route("/api/practice", practice),
     Route("/api/trial", trial),
+    Route("/api/place", place, methods=["POST"]),
     Route("/api/events", log, methods=["POST"]),
     _route("played", Played, answering.played),
     _route("stopped", Stopped, answering.stopped),
@@ -81,11 +95,31 @@ routes = [
 
 async def _message(request: Request, model: type[M]) -> M:
     try:
-        return model.model_validate_json(await request.body())
+        return read_message(model, await request.body())
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(str(part) for part in first["loc"]) or "body"
         raise InvalidInput(f"{where}: {first['msg']}, came {str(first['input'])[:80]!r}") from error
+
+
+def _find(request: Request) -> Callable[[Connection], Standing | None]:
+    """Finds the trial of the participant whose page asks; None when the trials are not due."""
+    token, study = token_of(request), services(request).study
+    page = request.query_params.get("participant")
+
+    def find(connection: Connection) -> Standing | None:
+        participant = answering.participant_at_trial(connection, token, page)
+        return answering.standing(study, participant) if participant.step == Step.TRIALS else None
+
+    return find
+
+
+def _index(request: Request) -> int:
+    """The trial's number in the path; no page of ours asks for one of four digits."""
+    digits = request.path_params["index"]
+    if not (digits.isascii() and digits.isdigit() and len(digits) < 4):
+        raise NoSuchTrial("Expected the number of a trial.")
+    return int(digits)
 
 
 def _state(study: Study, standing: Standing | None) -> dict[str, Any]:
@@ -98,6 +132,7 @@ def _state(study: Study, standing: Standing | None) -> dict[str, Any]:
             "phase": standing.phase,
             "position_ms": standing.position_ms,
             "stop_time_ms": standing.stop_time_ms,
+            "press_ms": standing.press_ms,
             "ticket": standing.ticket,
             "playback": _playback(study, standing.stimulus, standing.step_ms, standing.lead_in_ms),
         },

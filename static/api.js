@@ -28,10 +28,13 @@ export async function request(path, message) {
   return { ok: response.ok, status: response.status, body: await response.json().catch(() => null) };
 }
 
-/** Try until the server answers; `retrying(attempt, status)` is told. Throws only Refused. */
+/**
+ * Try until the server answers: GET without `message()`, which makes what is sent at each try.
+ * `retrying(attempt, status)` is told. Throws only Refused.
+ */
 export async function patiently(path, message, retrying = () => {}) {
   for (let wait = FIRST_WAIT_MS, attempt = 1; ; wait = Math.min(2 * wait, LONGEST_WAIT_MS), attempt += 1) {
-    const reply = await request(path, message).catch(() => ({ ok: false, status: 0 }));
+    const reply = await request(path, message?.()).catch(() => ({ ok: false, status: 0 }));
     if (reply.ok && reply.body) return reply.body;
     const passing = reply.ok || reply.status === 0 || reply.status >= 500 || [408, 425, 429].includes(reply.status);
     if (!passing) throw new Refused(reply);

@@ -1,8 +1,11 @@
 // The clock of one animation: pure, without page or timers. All times are milliseconds on one
 // time line (that of animation frames and events); a position is motion time since the first frame.
+// Nothing is seen before it is drawn: while the page is frozen, no position is reached beyond one
+// usual frame after the last one.
 
 export class Clock {
   #since = null; // when the present stretch of motion began
+  #lastFrame = null; // when the last frame in motion was drawn
   #pausedAt;
 
   /** A clock over `lengthMs` of motion; one that goes on after a reload brings what it had reached. */
@@ -11,6 +14,9 @@ export class Clock {
     this.reachedMs = clamp(positionMs, 0, lengthMs);
     this.pauses = pauses;
     this.pausedMs = pausedMs;
+    this.frameMs = 1000 / 60;
+    this.lastFrameMs = this.reachedMs; // the position drawn last
+    this.pressMs = null; // the position at the stop by the time line alone, drawn or not
     this.stoppedMs = null;
     this.#pausedAt = pausedAt;
   }
@@ -19,12 +25,21 @@ export class Clock {
     return this.#since !== null;
   }
 
-  /** Begin, or go on after a pause: `time` is the time stamp of the first frame in motion. */
-  run(time) {
+  /** Begin, or go on after a pause: `time` is that of the first frame in motion, `frameMs` the usual gap. */
+  run(time, frameMs = this.frameMs) {
     if (this.running || this.stoppedMs !== null) return;
     if (this.#pausedAt !== null) this.pausedMs += Math.max(0, time - this.#pausedAt);
     this.#pausedAt = null;
-    this.#since = time;
+    this.frameMs = frameMs;
+    this.#since = this.#lastFrame = time;
+  }
+
+  /** A frame is drawn at `time`: the position it shows. */
+  frame(time) {
+    if (!this.running) return this.position(time);
+    this.#lastFrame = Math.max(time, this.#lastFrame);
+    this.lastFrameMs = this.#elapsed(this.#lastFrame);
+    return this.lastFrameMs;
   }
 
   /** Hold the motion; time that passes from here on is not counted. */
@@ -32,25 +47,33 @@ export class Clock {
     if (!this.running) return;
     this.reachedMs = this.position(time);
     this.pauses += 1;
-    this.#pausedAt = time;
+    this.#pausedAt = this.#seen(time);
     this.#since = null;
   }
 
-  /** The motion time reached at `time`, within what was reached before and the length. */
+  /** The motion time reached at `time`, within what was reached before, what was drawn and the length. */
   position(time) {
     if (this.stoppedMs !== null) return this.stoppedMs;
-    if (!this.running) return this.reachedMs;
-    return clamp(this.reachedMs + time - this.#since, this.reachedMs, this.lengthMs);
+    return this.running ? this.#elapsed(this.#seen(time)) : this.reachedMs;
   }
 
   /** Stop for good at `time`; the first stop counts, whatever comes after it. */
   stop(time) {
     if (this.stoppedMs === null) {
       const position = this.position(time);
+      this.pressMs = this.running ? this.#elapsed(time) : position;
       this.#since = null;
       this.stoppedMs = position;
     }
     return this.stoppedMs;
+  }
+
+  #seen(time) {
+    return Math.min(time, this.#lastFrame + this.frameMs);
+  }
+
+  #elapsed(time) {
+    return clamp(this.reachedMs + time - this.#since, this.reachedMs, this.lengthMs);
   }
 
   get reachedEnd() {

@@ -2,13 +2,14 @@
 // often the network fails or the page is loaded again.
 
 import { patiently, request } from "./api.js";
-import { read, tenths, write } from "./storage.js";
+import { now, read, tenths, write } from "./storage.js";
 
 const LATE_MS = 3000; // without an answer for so long, the participant is told
 const MOST_EVENTS = 200; // in one message; the rest waits for the next
 
 export class Outbox {
   #name;
+  #participant;
   #on;
   #queue;
   #events;
@@ -18,9 +19,13 @@ export class Outbox {
   #late = false;
   #closed = false;
 
-  /** `on`: {late(), saved() after late, refused(error): the server will not take the first message}. */
-  constructor(name, on) {
+  /**
+   * `participant`: whose page this is, as every message says.
+   * `on`: {late(), saved() after late, refused(error): the server will not take the first message}.
+   */
+  constructor(name, participant, on) {
     this.#name = name;
+    this.#participant = participant;
     this.#on = on;
     const kept = read(name);
     this.#queue = kept?.queue ?? [];
@@ -50,7 +55,7 @@ export class Outbox {
   sendLast(path, body) {
     if (this.#closed || !this.#events.length) return;
     const message = this.#add(path, body);
-    if (this.#queue.length === 1) request(message.path, message.body).catch(() => {});
+    if (this.#queue.length === 1) request(message.path, sent(message)).catch(() => {});
   }
 
   /** Resolves when everything queued is delivered, also what was queued before a reload. */
@@ -96,10 +101,13 @@ export class Outbox {
   }
 
   async #deliverFirst() {
-    const { key, path, body } = this.#queue[0];
-    const reply = await patiently(path, body, (attempt, status) =>
-      this.log("retried", { path, attempt, status }),
-    );
+    const message = this.#queue[0];
+    const { key, path } = message;
+    const retrying = (attempt, status) => {
+      // The first tries, then ever fewer: an outage of a day fills no log.
+      if (Number.isInteger(Math.log2(attempt))) this.log("retried", { path, attempt, status });
+    };
+    const reply = await patiently(path, () => sent(message), retrying);
     if (this.#closed) return;
     this.#queue.shift();
     this.#keep();
@@ -115,7 +123,9 @@ export class Outbox {
 
   #add(path, body) {
     const key = uuid();
-    const message = { key, path, body: { key, ...body, events: this.#events.splice(0, MOST_EVENTS) } };
+    const whose = { key, participant: this.#participant };
+    const events = this.#events.splice(0, MOST_EVENTS);
+    const message = { key, path, at: now(), body: { ...whose, ...body, events } };
     this.#queue.push(message);
     this.#keep();
     return message;
@@ -124,6 +134,11 @@ export class Outbox {
   #keep() {
     if (!this.#closed) write(this.#name, { queue: this.#queue, events: this.#events });
   }
+}
+
+/** A message as it is sent now: it says how long it has waited. One queued before an upgrade cannot. */
+function sent({ at, body }) {
+  return at === undefined ? body : { ...body, waited_ms: tenths(Math.max(0, now() - at)) };
 }
 
 function uuid() {

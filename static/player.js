@@ -156,7 +156,7 @@ export class Player {
       else this.scene.draw({ ring: counted / whole });
     }
     if (this.phase === "moving") {
-      const position = this.clock.position(time);
+      const position = this.clock.frame(time);
       if (position >= this.lengthMs) return this.#stop(time);
       this.scene.draw({ ring: null, steps: position / this.#playback.step_ms });
       const step = Math.floor(position / this.#playback.step_ms);
@@ -169,7 +169,7 @@ export class Player {
   };
 
   #setOff(time) {
-    this.clock.run(time);
+    this.clock.run(time, this.meter.intervalMs);
     this.#enter("moving");
     if (!this.begun) {
       this.begun = true;

@@ -18,6 +18,11 @@ export function write(name, value) {
   }
 }
 
+/** Milliseconds since 1970, running evenly while a page is open: to measure waiting across reloads. */
+export function now() {
+  return performance.timeOrigin + performance.now();
+}
+
 /** Milliseconds as they are sent and kept: to a tenth. */
 export function tenths(milliseconds) {
   return Math.round(milliseconds * 10) / 10;

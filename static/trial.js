@@ -8,11 +8,14 @@ import { read, tenths, write } from "./storage.js";
 import { Tabs } from "./tabs.js";
 
 const byId = (id) => document.getElementById(id);
-const OURS = `goalguess:${document.body.dataset.participant ?? ""}`;
+const PARTICIPANT = document.body.dataset.participant;
+const OURS = `goalguess:${PARTICIPANT}`;
+const WHOSE = `?participant=${PARTICIPANT}`; // the session may be another one's by now
 const REACHED = `${OURS}:reached`; // how far the robot of the present round has come
 const POINTED = `${OURS}:pointed`; // the last round in which the pointer was moved
 const ANSWER_WAITS = "Saving … keep this page open; your answer is safe on this device.";
 const OFFLINE = "No connection … trying again.";
+const ANOTHER_MAZE = "The first maze had waited too long, so here is another one. Nothing is lost.";
 
 const stage = byId("stage");
 let outbox = null; // there is one while this tab is the active one
@@ -46,7 +49,7 @@ byId("try-again").addEventListener("click", () => {
 /** Deliver what an earlier visit left behind, then go on where the server says we are. */
 async function start() {
   notice(null);
-  outbox = new Outbox(`${OURS}:outbox`, {
+  outbox = new Outbox(`${OURS}:outbox`, PARTICIPANT, {
     late: () => saving(answerWaits() ? ANSWER_WAITS : OFFLINE),
     saved: () => saving("Saved"),
     refused,
@@ -55,9 +58,20 @@ async function start() {
   if (answerLeft) saving(ANSWER_WAITS);
   await outbox.flush();
   try {
-    show(await patiently("/api/trial", undefined, () => saving(OFFLINE)));
+    show(await patiently(`/api/trial${WHOSE}`, undefined, () => saving(OFFLINE)));
     if (answerLeft) saving("Saved");
     else unsay(OFFLINE);
+  } catch (error) {
+    if (error.code === "place_returned") await takeAnotherPlace();
+    else refused(error);
+  }
+}
+
+/** Our place went to somebody else before we played. */
+async function takeAnotherPlace() {
+  try {
+    show(await patiently(`/api/place${WHOSE}`, () => ({}), () => saving(OFFLINE)));
+    saving(ANOTHER_MAZE);
   } catch (error) {
     refused(error);
   }
@@ -130,7 +144,7 @@ function played(time) {
 
 async function stopped(time) {
   const { clock, meter } = player;
-  const stop_time_ms = tenths(clock.stoppedMs);
+  const stop_time_ms = tenths(clock.pressMs); // what of it was seen, the server derives
   const { index } = trial;
   trial.stop_time_ms = stop_time_ms;
   questions.ask(trial.playback, time);
@@ -138,6 +152,8 @@ async function stopped(time) {
   outbox.log("stopped", { stop_time_ms }, time);
   const reply = await tell("stopped", {
     stop_time_ms,
+    last_frame_ms: tenths(clock.lastFrameMs),
+    frame_interval_ms: tenths(clock.frameMs),
     reached_end: clock.reachedEnd,
     pauses: clock.pauses,
     paused_ms: tenths(clock.pausedMs),
@@ -147,7 +163,7 @@ async function stopped(time) {
   });
   // The server may hold another stop already, made in another tab: that one counts.
   const theirs = reply.repeated ? reply.trial : null;
-  const other = theirs && (theirs.index !== index || theirs.stop_time_ms !== stop_time_ms);
+  const other = theirs && (theirs.index !== index || (theirs.press_ms ?? theirs.stop_time_ms) !== stop_time_ms);
   if (other && trial.index === index && questions.open) show(reply);
 }
 
@@ -170,6 +186,10 @@ function refused(error) {
   if (elsewhere || error.status === 401) return location.reload();
   player.pause(performance.now());
   saving("");
+  if (error.code === "other_participant") {
+    outbox.close(); // what waits in it stays, for when its participant is back
+    return notice("other-person");
+  }
   byId("trouble-detail").textContent = error.message;
   notice("trouble");
 }
@@ -187,7 +207,7 @@ function giveWay() {
 /** Show one of the notices in place of the game, or the game. */
 function notice(id) {
   byId("rounds").hidden = id !== null;
-  for (const one of ["other-tab", "trouble"]) byId(one).hidden = one !== id;
+  for (const one of ["other-tab", "other-person", "trouble"]) byId(one).hidden = one !== id;
   if (id) byId(id).focus();
 }
 

@@ -1,17 +1,20 @@
 """The study in a process of its own, as `goalguess serve` runs it: to be measured and killed."""
 
+import json
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 from types import TracebackType
-from typing import IO
+from typing import IO, get_args
+
+from app.settings import Ending
 
 COMPLETE = {
     "researchers": "The Goalguess team",
     "contact": "study@example.org",
-    "codes": '{"completed": "DONE1"}',
+    "codes": json.dumps(dict.fromkeys(get_args(Ending), "DONE1")),
 }
 """Without these, the server says at each start what is not set."""
 
@@ -36,7 +39,7 @@ class ServerProcess:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        self.end()
+        self.stop()
 
     @property
     def url(self) -> str:
@@ -58,8 +61,8 @@ class ServerProcess:
         announced = (re.search(r"http://[^:]+:(\d+)/", line) for line in self._process.stdout)
         self.port = next(int(found[1]) for found in announced if found)
 
-    def end(self) -> None:
-        """End it as an operator does; returns when it has finished."""
+    def stop(self) -> None:
+        """End it as Ctrl+C does."""
         self._process.terminate()
         self._ended()
 

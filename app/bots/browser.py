@@ -51,6 +51,12 @@ class Page:
         return read_form(self.html) or Form("")
 
     @property
+    def participant(self) -> str | None:
+        """Whose page it is, as it tells its scripts."""
+        told = re.search(r'data-participant="(.*?)"', self.html)
+        return told[1] if told else None
+
+    @property
     def heading(self) -> str:
         """The words of the page's heading."""
         heading = re.search(r"<h1.*?>(.*?)</h1>", self.html, re.DOTALL)
@@ -85,6 +91,10 @@ class Browser:
     async def send(self, path: str, message: BaseModel) -> dict[str, Any]:
         """Send a message of a page's script; the reply."""
         return _state(await self._patiently("POST", path, content=message.model_dump_json()))
+
+    async def ask(self, path: str) -> dict[str, Any]:
+        """Ask for something that changes what is stored, as a page's script does."""
+        return _state(await self._patiently("POST", path, content="{}"))
 
     async def _patiently(self, method: str, path: str, **request: Any) -> Response:
         wait, waited = FIRST_WAIT_S, 0.0

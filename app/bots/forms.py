@@ -28,7 +28,8 @@ class Form:
             filled[name] = str(min(high, low + int(rng.gamma(2, 7))))
         filled |= {name: str(rng.choice(NATIONALITIES)) for name in self.texts}
         ticked = {name: value for name, value in self.boxes.items() if rng.random() < WITHHOLDING}
-        return filled | ticked
+        withheld = {name.removesuffix("_withheld") for name in ticked}
+        return {name: value for name, value in filled.items() if name not in withheld} | ticked
 
 
 class _Reader(HTMLParser):

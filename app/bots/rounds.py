@@ -9,7 +9,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
 from app.bots.bot import Bot
-from app.bots.browser import Browser
+from app.bots.browser import Browser, Page, Refused
 from app.bots.kinds import Kind
 from app.bots.observer import Judgement, letters_of, watch_to_the_end
 from app.schemas import Answered, EventType, Logged, LoggedEvent, Message, Played, Stopped
@@ -39,20 +39,27 @@ class Rounds:
         self._bot = bot
         self._browser = browser
         self._reach = reach
+        self._participant: str | None = None
         self._judgements: dict[int, Judgement] = {}
         self._events: list[LoggedEvent] = []
         self._clock_ms = 0.0
         self._pauses = 0
 
-    async def play(self) -> None:
+    async def play(self, page: Page) -> None:
         """Play whatever rounds are left."""
+        self._participant = page.participant
         state = await self._load()
         while state["trial"]:
             state = await self._live(state["trial"])
 
     async def _load(self) -> State:
         self._clock_ms = 0.0
-        state = await self._browser.fetch("/api/trial")
+        try:
+            state = await self._browser.fetch(f"/api/trial?participant={self._participant}")
+        except Refused as refused:
+            if refused.refusal != "place_returned":
+                raise
+            state = await self._browser.ask(f"/api/place?participant={self._participant}")
         self._log("shown")
         return state
 
@@ -152,7 +159,7 @@ class Rounds:
 
     def _message(self, model: type[M], **facts: Any) -> M:
         events, self._events = self._events, []
-        return model(key=self._key(), events=events, **facts)
+        return model(key=self._key(), participant=self._participant, events=events, **facts)
 
     def _key(self) -> str:
         return str(uuid.UUID(bytes=self._bot.rng.bytes(16), version=4))

@@ -79,10 +79,10 @@ class Visit:
         await self.turn.to_be_dealt()
         return await self._submit(page.form, answers)
 
-    async def _play(self, _page: Page) -> Page:
+    async def _play(self, page: Page) -> Page:
         await self.turn.dealt()
         try:
-            await self.rounds.play()
+            await self.rounds.play(page)
         except Refused as refused:
             if refused.refusal not in ELSEWHERE:
                 raise

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from httpx2 import Response
+from httpx2 import Client, Response
 from sqlalchemy import Select, Table, select
 from starlette.testclient import TestClient
 
@@ -52,7 +52,7 @@ def database(study: Study) -> Iterator[Database]:
 class Browser:
     """A participant's browser: keeps cookies, sends what our pages send."""
 
-    def __init__(self, client: TestClient) -> None:
+    def __init__(self, client: Client) -> None:
         self.client = client
 
     def get(self, path: str) -> Response:
@@ -65,10 +65,21 @@ class Browser:
     def send(self, path: str, body: dict[str, Any]) -> Response:
         return self.client.post(path, json=body, headers={"origin": ORIGIN})
 
-    def consent(self, query: str = "") -> Response:
-        page = self.get(f"/{query}")
-        fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
-        return self.post("/consent", {**fields, "decision": "yes"})
+    def hidden_fields(self, path: str) -> dict[str, str]:
+        """What the form of a page sends along."""
+        page = self.get(path)
+        return dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', page.text))
+
+    def consent(self, query: str = "", decision: str = "yes") -> Response:
+        return self.post("/consent", {**self.consent_form(query), "decision": decision})
+
+    def consent_form(self, query: str = "") -> dict[str, str]:
+        """The hidden fields of one showing of the consent form."""
+        return self.hidden_fields(f"/{query}")
+
+    def go_on_here(self, query: str) -> Response:
+        """Open the link in this browser, and press the button."""
+        return self.post("/go-on", self.hidden_fields(f"/{query}"))
 
     def reach_practice(self, query: str = "") -> None:
         self.consent(query)

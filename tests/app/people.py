@@ -21,11 +21,11 @@ def consent(connection: Connection, study: Study, stream: str = PARTICIPANT) -> 
 
 
 def describe(connection: Connection, study: Study, token: str) -> None:
-    enrolment.describe(connection, study, token, ABOUT_ME)
+    enrolment.describe(connection, study, token, None, ABOUT_ME)
 
 
 def pass_control(connection: Connection, study: Study, token: str) -> None:
-    enrolment.answer_control(connection, study, token, 1, CONTROL_RIGHT)
+    enrolment.answer_control(connection, study, token, None, 1, CONTROL_RIGHT)
 
 
 TO_THE_TRIALS = (describe, enrolment.finish_instructions, pass_control)

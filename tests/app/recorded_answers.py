@@ -3,6 +3,7 @@
 The journal holds, in their order, what was done to each file and which answers were acknowledged.
 """
 
+import asyncio
 import multiprocessing
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
@@ -16,10 +17,11 @@ import numpy as np
 from sqlalchemy import Engine, event
 
 from app import enrolment
-from app.database import Database, sqlite_engine
+from app.database import Database
 from app.opening import open_database
 from app.sessions import participant_of
 from app.settings import Settings
+from app.sqlite import sqlite_engine
 from app.study import Study, load_study
 from tests.app import people
 from tests.app.recorded_sqlite import Entry, record_sqlite
@@ -84,7 +86,7 @@ class _Study:
         token = self.write(people.reach_trials).result()
         if seed % 6 == 5:
             self.write(enrolment.withdraw, token).result()
-            self.database.forget_deleted()
+            asyncio.run(self.database.forget_deleted())
             return
         participant = self.database.read_now(lambda c: participant_of(c, token).id)
         rng = np.random.default_rng(seed)

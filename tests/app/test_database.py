@@ -10,7 +10,8 @@ import pytest
 from sqlalchemy import event, insert, select, text
 from sqlalchemy.exc import IntegrityError
 
-from app.database import Database, sqlite_engine
+from app.database import Database
+from app.sqlite import sqlite_engine
 from app.tables import sessions, tallies
 
 
@@ -56,7 +57,7 @@ def test_a_finished_write_is_seen_by_another_connection(bare, settings):
 
 def test_a_write_is_not_acknowledged_before_its_commit(bare):
     committed = []
-    event.listen(bare._write_engine, "commit", lambda _connection: committed.append(True))
+    event.listen(bare._writer, "commit", lambda _connection: committed.append(True))
     future = bare.submit(add("one"))
     seen = []
     future.add_done_callback(lambda _future: seen.append(list(committed)))
@@ -68,7 +69,7 @@ def test_a_write_is_not_acknowledged_before_its_commit(bare):
 
 def test_waiting_writes_share_one_commit(bare):
     commits = []
-    event.listen(bare._write_engine, "commit", lambda _connection: commits.append(1))
+    event.listen(bare._writer, "commit", lambda _connection: commits.append(1))
     go_on = hold(bare)
     waiting = [bare.submit(add(f"n{i}")) for i in range(50)]
     go_on.set()
@@ -187,7 +188,7 @@ def test_opening_a_new_file_waits_for_another_process_that_writes_to_it(settings
 
 def test_who_waits_for_another_process_asks_often_enough_to_find_it_idle(bare, settings):
     asked = Semaphore(0)
-    event.listen(bare._write_engine, "before_cursor_execute", lambda *_: asked.release())
+    event.listen(bare._writer, "before_cursor_execute", lambda *_: asked.release())
     with closing(sqlite3.connect(settings.database_file)) as other:
         other.execute("BEGIN IMMEDIATE")
         waiting = bare.submit(add("one"))

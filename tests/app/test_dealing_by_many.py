@@ -1,6 +1,6 @@
 """Dealing by several processes at once, on one file, with dropouts and returned places."""
 
-from app.database import sqlite_engine
+from app.sqlite import sqlite_engine
 from app.study import PARTICIPANT, load_study
 from tests.app.arrivals import arrive_at_once, settings_of
 from tests.app.dealing_bounds import bounds, read_dealings

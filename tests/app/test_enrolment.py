@@ -157,6 +157,8 @@ def test_a_place_never_played_is_given_back_and_dealt_again_first(
     assert (rows(places)[0].number, rows(places)[0].participant_id) == (0, 2)
     assert browser.play(1).json()["error"]["code"] == "place_returned"
     assert browser.get("/trial").status_code == 200
+    assert browser.get("/api/trial").json()["error"]["code"] == "place_returned"
+    assert browser.send("/api/place", {}).json()["trial"]["phase"] == "ready"
     assert [row.participant_id for row in rows(places)][:2] == [2, 1]
     assert browser.play(1).status_code == 200
 

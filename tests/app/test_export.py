@@ -152,7 +152,7 @@ def test_details_of_events_stay_json(browser, write):
 
 
 def test_what_the_hashes_stand_for_and_the_anonymous_counts_are_exported(browser, write, study):
-    browser.post("/consent", {"decision": "no"})
+    browser.consent(decision="no")
     browser.take_part()
     _, folder = write()
     about = json.loads((folder / "study.json").read_text(encoding="utf-8"))

@@ -99,7 +99,7 @@ def test_the_limit_counts_the_addresses_that_a_proxy_passes_on(settings):
             client.cookies.clear()
             passed_on = {"x-forwarded-for": address} if address else {}
             client.headers.update(passed_on)
-            statuses.append(Browser(client).consent().status_code)  # type: ignore[arg-type]
+            statuses.append(Browser(client).consent().status_code)
             client.headers.pop("x-forwarded-for", None)
     assert statuses == [303, 303, 429, 303, 303]
 

@@ -77,7 +77,7 @@ def test_no_log_says_whom_anything_happened_to(tmp_path):
         # The whole study, which works; then everything again with a table missing each time.
         for missing in [None, *TABLES, "indexes"]:
             with Client(base_url=server.url, headers={"host": "study.test"}) as client:
-                browser = Browser(client)  # type: ignore[arg-type]
+                browser = Browser(client)
                 browser.reach_practice(LINK)
                 secrets |= set(
                     re.findall(r'data-participant="(.+?)"', browser.get("/practice").text)
@@ -89,10 +89,10 @@ def test_no_log_says_whom_anything_happened_to(tmp_path):
                     assert browser.post("/withdraw").status_code == 303
                 elif missing == "indexes":
                     damage_indexes(database)
-                    assert 500 in try_everything(browser)
+                    assert max(try_everything(browser)) >= 500
                 else:
                     with without(database, missing):
-                        assert 500 in try_everything(browser)
+                        assert max(try_everything(browser)) >= 500
                     browser.post("/withdraw")
     said = log.read_text()
     for table in TABLES:

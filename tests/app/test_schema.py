@@ -10,9 +10,9 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
 import app.schema
-from app.database import sqlite_engine
 from app.errors import DatabaseMismatch
 from app.schema import HEAD, prepare
+from app.sqlite import sqlite_engine
 from app.tables import metadata
 
 ROWS_OF_THE_FIRST_VERSION = """

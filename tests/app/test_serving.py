@@ -82,7 +82,7 @@ def test_a_half_sent_body_does_not_keep_the_server_from_ending(process, tmp_path
         connection.sendall(HALF_SENT)
         time.sleep(0.2)
         began = time.monotonic()
-        process.end()
+        process.stop()
         assert time.monotonic() - began < serving.GRACE_S
         assert b" 408 " in all_from(connection)
     assert_no_trouble(tmp_path / "log")
@@ -104,7 +104,7 @@ def unread(port: int) -> socket.socket:
 def test_a_reply_that_nobody_reads_does_not_keep_the_server_from_ending(process, tmp_path):
     with unread(process.port):
         began = time.monotonic()
-        process.end()
+        process.stop()
         assert time.monotonic() - began < serving.GRACE_S
     assert_no_trouble(tmp_path / "log")
 

@@ -6,7 +6,9 @@ Serves a study and plays it in a real browser, stopping at random moments, half 
 half by keyboard; compares the stop times in the database with what was on screen at the press
 (tests/benchmarks/onlooker.py says how that is known). Printed beside them: the same by the clock of
 the program that presses, its way into the browser included; what performance.now() in a handler of
-the press would have recorded; and what the time stamp of a click would have.
+the press would have recorded; and what the time stamp of a click would have. Last, a row for each
+of several times for which the page is frozen while Stop is pressed: how far the press ran ahead of
+what was drawn, and what is stored.
 """
 
 import argparse
@@ -32,6 +34,10 @@ TARGET_MS = 16.7  # a frame
 ROUNDS = 10
 WATCHED_MS = (50, 2000)  # from the first border that the robot crosses to the press
 HELD_MS = (40, 160)  # from the press to the release
+FROZEN_MS = (200, 1000, 3000, 6000)
+FREEZE = """ms => setTimeout(() => {
+    for (const until = performance.now() + ms; performance.now() < until;);
+})"""
 
 WAYS: dict[str, tuple[Callable[[Page], None], Callable[[Page], None]]] = {
     "mouse": (lambda page: page.mouse.down(), lambda page: page.mouse.up()),
@@ -47,7 +53,9 @@ class Stop:
     sent_ms: float
     """When this program began to press, since 1970."""
     stored_ms: float
+    press_ms: float
     dropped: int
+    clamped: bool
 
     @property
     def error_ms(self) -> float:
@@ -65,25 +73,33 @@ ERRORS: dict[str, Callable[[Stop], float]] = {
 }
 
 
-def take_stops(page: Page, database: Path, ways: list[str], rng: np.random.Generator) -> list[Stop]:
+def take_stops(
+    page: Page, database: Path, ways: list[str], rng: np.random.Generator, frozen_ms: float = 0
+) -> list[Stop]:
     """One participant's stops, a round each; those the onlooker cannot judge are left out."""
     onlooker.accompany(page)
     walk.reach_trials(page)
-    rounds = [_round(page, index, way, rng) for index, way in enumerate(ways, 1)]
+    rounds = [_round(page, index, way, rng, frozen_ms) for index, way in enumerate(ways, 1)]
     rows = zip(rounds, _last_participant(database), strict=True)
     return [Stop(seen, sent_ms, *stored) for (seen, sent_ms), stored in rows if seen]
 
 
 def _round(
-    page: Page, index: int, way: str, rng: np.random.Generator
+    page: Page, index: int, way: str, rng: np.random.Generator, frozen_ms: float
 ) -> tuple[onlooker.Sight | None, float]:
-    """Play a round, through to the next one: what was seen of the stop, and when it was sent."""
+    """Play a round, through to the next one: what was seen of the stop, and when it was sent.
+
+    The page is frozen for so long, and Stop pressed in the middle of that.
+    """
     playback = walk.trial(page)["playback"]
     onlooker.begin(page)
     page.locator("#play").hover()
     _press(page, way, held_ms=0)
     walk.phase(page, "moving")
     page.wait_for_timeout(_first_border_ms(playback) + rng.uniform(*WATCHED_MS))
+    if frozen_ms:
+        page.evaluate(FREEZE, frozen_ms)
+        time.sleep(frozen_ms / 2000)
     sent_ms = _press(page, way, held_ms=rng.uniform(*HELD_MS))
     walk.phase(page, "stopped")
     seen = onlooker.sight(page, playback)
@@ -112,9 +128,9 @@ def _first_border_ms(playback: dict[str, Any]) -> float:
     return float((step + 0.5) * playback["step_ms"])
 
 
-def _last_participant(database: Path) -> list[tuple[float, int]]:
-    """Stop time and frames dropped of each trial of the newest participant."""
-    query = """select stop_time_ms, frames_dropped from trials
+def _last_participant(database: Path) -> list[tuple[float, float, int, bool]]:
+    """What is stored of the stop of each trial of the newest participant."""
+    query = """select stop_time_ms, press_ms, frames_dropped, times_clamped from trials
         where participant_id = (select max(participant_id) from trials) order by trial_index"""
     with closing(sqlite3.connect(database)) as connection:
         return connection.execute(query).fetchall()
@@ -149,6 +165,33 @@ def table(stops: list[Stop]) -> str:
     return "\n".join([*lines, f"frames dropped: {ours} stored, {theirs} seen by the onlooker"])
 
 
+def measure_frozen(
+    browser: Browser, url: str, database: Path, stops: int, seed: int
+) -> dict[int, list[Stop]]:
+    """So many stops for each time that the page is frozen."""
+    rng = np.random.default_rng(seed)
+    taken = {}
+    for frozen_ms in FROZEN_MS:
+        page = browser.new_page(base_url=url, viewport={"width": 1280, "height": 800})
+        taken[frozen_ms] = take_stops(page, database, ["keyboard"] * stops, rng, frozen_ms)
+        page.close()
+        print(f"frozen {frozen_ms} ms: {len(taken[frozen_ms])} of {stops} stops", file=sys.stderr)
+    return taken
+
+
+def frozen_table(taken: dict[int, list[Stop]]) -> str:
+    """A row for each time frozen: medians of what a press gives and of what is stored, ms."""
+    head = f"{'frozen, ms':>10} {'press ahead of the last frame':>30} {'press - on screen':>18}"
+    lines = [f"{head} {'|stored - on screen|':>21} {'flagged':>8}"]
+    for frozen_ms, stops in taken.items():
+        ahead = np.median([stop.seen.since_frame_ms for stop in stops])
+        by_press = np.median([stop.press_ms - stop.seen.position_ms for stop in stops])
+        error = np.median([abs(stop.error_ms) for stop in stops])
+        flagged = f"{sum(stop.clamped for stop in stops)}/{len(stops)}"
+        lines.append(f"{frozen_ms:10} {ahead:30.0f} {by_press:18.0f} {error:21.2f} {flagged:>8}")
+    return "\n".join(lines)
+
+
 def shortcomings(stops: list[Stop], asked: int) -> list[str]:
     """What is wrong with the stops taken: too few of them, or too large an error."""
     found = []
@@ -165,6 +208,7 @@ def main() -> None:
     parser.add_argument("--stops", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--slowdown", type=float, nargs="+", default=[1, 4])
+    parser.add_argument("--frozen", type=int, default=5, help="stops for each time frozen")
     given = parser.parse_args()
     failures = []
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
@@ -181,6 +225,11 @@ def main() -> None:
                 print(f"\nProcessor slowed {slowdown:g} times, {len(stops)} stops")
                 print(table(stops))
                 failures += shortcomings(stops, given.stops)
+            frozen = measure_frozen(browser, url, file, given.frozen, given.seed)
+            print("\nPage frozen, Stop pressed meanwhile")
+            print(frozen_table(frozen))
+            for stops in frozen.values():
+                failures += shortcomings(stops, given.frozen)
         browser.close()
     sys.exit("\n".join(failures) or 0)
 

@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from app.database import sqlite_engine
+from app.sqlite import sqlite_engine
 from app.study import PARTICIPANT, load_study
 from tests.app.arrivals import arrive_at_once, settings_of
 from tests.app.dealing_bounds import bounds, read_dealings

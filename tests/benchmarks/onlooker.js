@@ -31,7 +31,8 @@
 
   const hear = (list) => (event) => {
     if (!event.isTrusted) return;
-    list().push({ at: event.timeStamp, handled: performance.now(), places: seen.places.length });
+    const [places, frames] = [seen.places.length, seen.frames.length];
+    list().push({ at: event.timeStamp, handled: performance.now(), places, frames });
   };
   for (const type of ["pointerdown", "keydown"]) addEventListener(type, hear(() => seen.presses), true);
   for (const type of ["pointerup", "keyup"]) addEventListener(type, hear(() => seen.releases), true);

@@ -5,8 +5,9 @@ onlooker (onlooker.js, in the page but without the study's code) knows two thing
 the robot was drawn in each frame, and the time stamps that the browser gives to presses. In the
 middle of step k, counted from 0, the robot crosses the border of two cells, however its motion is
 tweened: there its position is (k + 1/2) step_ms. So the truth is the position at the last crossing
-plus the time from there to the press; between two frames the motion is taken to run on, as eyes
-take it. What mouse, keyboard and screen add, nobody in the page sees.
+plus the time from there to the press. From one frame to when the next one is usually due the motion
+is taken to run on, as eyes take it, and no further: a frozen page shows a still picture. What
+mouse, keyboard and screen add, nobody in the page sees.
 """
 
 from collections.abc import Iterable, Iterator
@@ -37,6 +38,8 @@ class Sight:
     """From the press until a handler of it ran."""
     held_ms: float
     """From the press to the release, which a click comes with."""
+    since_frame_ms: float
+    """From the last frame drawn to the press."""
     dropped: int
     """Frames dropped in motion: gaps longer than one and a half times the usual one."""
 
@@ -61,7 +64,9 @@ def sight(page: Page, playback: dict[str, Any]) -> Sight | None:
         for time, row, col in seen["places"][: press["places"]]
         if time <= press["at"]
     ]
-    position_ms = position(drawn, playback["path"], playback["step_ms"], press["at"])
+    last_frame, usual_gap = _rhythm(seen["frames"][: press["frames"]])
+    shown_until = min(press["at"], last_frame + usual_gap)
+    position_ms = position(drawn, playback["path"], playback["step_ms"], shown_until)
     if position_ms is None:
         return None
     return Sight(
@@ -69,6 +74,7 @@ def sight(page: Page, playback: dict[str, Any]) -> Sight | None:
         pressed_ms=seen["origin"] + press["at"],
         handled_ms=press["handled"] - press["at"],
         held_ms=release["at"] - press["at"],
+        since_frame_ms=press["at"] - last_frame,
         dropped=_dropped(seen["frames"], press["at"] - position_ms, press["at"]),
     )
 
@@ -98,6 +104,11 @@ def _crossings(places: Iterable[Place], path: list[Cell]) -> Iterator[tuple[int,
             if done < 0.5 <= doing:
                 yield step, before + (after - before) * (0.5 - done) / (doing - done)
                 break
+
+
+def _rhythm(frames: list[float]) -> tuple[float, float]:
+    """When the last of the frames drawn before a press was, and the usual gap between two."""
+    return frames[-1], float(np.median(np.diff(frames)))
 
 
 def _dropped(frames: list[float], first: float, last: float) -> int:

@@ -16,12 +16,14 @@ RUN = """async ([static, cases]) => {
             clock[what](time);
             return clock.position(time);
         });
-        const { pauses, pausedMs, stoppedMs, reachedEnd } = clock;
-        return { seen, pauses, pausedMs, stoppedMs, reachedEnd };
+        const { pauses, pausedMs, pressMs, lastFrameMs, stoppedMs, reachedEnd } = clock;
+        return { seen, pauses, pausedMs, pressMs, lastFrameMs, stoppedMs, reachedEnd };
     });
 }"""
 
 Case = dict[str, Any]
+
+FRAME_MS = 1000 / 60
 
 
 @pytest.fixture
@@ -42,28 +44,47 @@ def one(page: Page, length: float, *steps: tuple[str, float], **start: Any) -> C
 
 
 def test_a_stop_counts_from_the_first_frame_in_motion(page: Page):
-    assert one(page, 20000, ("run", 1000.5), ("stop", 4321.25))["stoppedMs"] == 3320.75
+    outcome = one(page, 20000, ("run", 1000.5), ("frame", 4310), ("stop", 4321.25))
+    assert (outcome["stoppedMs"], outcome["lastFrameMs"]) == (3320.75, 3309.5)
 
 
 def test_pauses_do_not_count(page: Page):
-    outcome = one(page, 9000, ("run", 100), ("pause", 600), ("run", 5600), ("stop", 5850))
+    steps = [("run", 100), ("frame", 590), ("pause", 600), ("run", 5600), ("frame", 5840)]
+    outcome = one(page, 9000, *steps, ("stop", 5850))
     assert outcome["stoppedMs"] == 750
     assert (outcome["pauses"], outcome["pausedMs"]) == (1, 5000)
 
 
 def test_a_stop_never_lies_before_the_motion_or_after_its_end(page: Page):
     assert one(page, 9000, ("run", 100), ("stop", 92))["stoppedMs"] == 0
-    late = one(page, 9000, ("run", 100), ("stop", 9900))
-    assert (late["stoppedMs"], late["reachedEnd"]) == (9000, True)
-    assert one(page, 9000, ("run", 100), ("stop", 9099.9))["reachedEnd"] is False
+    late = one(page, 9000, ("run", 100), ("frame", 9110), ("stop", 9900))
+    assert (late["stoppedMs"], late["pressMs"], late["reachedEnd"]) == (9000, 9000, True)
+    early = one(page, 9000, ("run", 100), ("frame", 9090), ("stop", 9099.9))
+    assert early["reachedEnd"] is False
+
+
+@pytest.mark.parametrize("what", ["stop", "pause"])
+def test_while_the_page_is_frozen_nothing_is_reached_that_was_not_drawn(page: Page, what: str):
+    outcome = one(page, 9000, ("run", 100), ("frame", 800), (what, 3354))
+    assert outcome["seen"][-1] == pytest.approx(700 + FRAME_MS)
+    if what == "stop":
+        assert (outcome["pressMs"], outcome["lastFrameMs"]) == (3254, 700)
+
+
+def test_the_end_is_not_reached_while_the_page_is_frozen(page: Page):
+    outcome = one(page, 3000, ("run", 100), ("frame", 800), ("stop", 6744))
+    assert (outcome["pressMs"], outcome["reachedEnd"]) == (3000, False)
 
 
 def test_the_first_stop_is_final(page: Page):
     outcome = one(
-        page, 9000, ("run", 0), ("stop", 500), ("run", 900), ("pause", 950), ("stop", 999)
+        page,
+        9000,
+        *(("run", 0), ("frame", 490), ("stop", 500)),
+        *(("run", 900), ("pause", 950), ("frame", 990), ("stop", 999)),
     )
     assert outcome["stoppedMs"] == 500
-    assert outcome["seen"][1:] == [500, 500, 500, 500]
+    assert outcome["seen"][2:] == [500] * 5
 
 
 def test_motion_goes_on_where_it_was_after_a_reload(page: Page):
@@ -71,6 +92,7 @@ def test_motion_goes_on_where_it_was_after_a_reload(page: Page):
         page,
         9000,
         ("run", 300),
+        ("frame", 390),
         ("stop", 400),
         positionMs=2500,
         pauses=1,
@@ -102,27 +124,29 @@ def any_case(dice: random.Random) -> Case:
     time, steps = dice.uniform(0, 1e5), []
     for _ in range(dice.randrange(1, 12)):
         time += dice.choice((0.0, dice.uniform(0, 20), dice.uniform(0, 3000)))
-        steps.append((dice.choice(("run", "run", "pause", "position", "stop")), time))
+        steps.append((dice.choice(("run", "run", "frame", "frame", "pause", "stop")), time))
     return {"length": dice.choice((2000, 9000.5)), "start": {}, "steps": steps}
 
 
 def model(case: Case) -> tuple[float, int, float, list[float]]:
-    """Sums up the time between run and pause or stop, capped at the length."""
-    moved, pauses, paused = 0.0, 0, 0.0
-    state, since = "waiting", 0.0
+    """Sums up the time between run and pause or stop, as far as it was drawn and to the length."""
+    drawn, pauses, paused = 0.0, 0, 0.0  # `drawn`: at the last frame, or where the motion stands
+    state, since = "waiting", 0.0  # `since`: the last frame, or the pause
     seen: list[float] = []
     for what, time in case["steps"]:
-        if state == "running":
-            moved, since = min(moved + time - since, case["length"]), time
+        after = time - since if what == "frame" else min(time - since, FRAME_MS)
+        moved = min(drawn + after, case["length"]) if state == "running" else drawn
         if what == "run" and state in ("waiting", "paused"):
             paused += time - since if state == "paused" else 0
             state, since = "running", time
+        elif what == "frame" and state == "running":
+            drawn, since = moved, time
         elif what == "pause" and state == "running":
-            pauses, state, since = pauses + 1, "paused", time
+            pauses, state, drawn, since = pauses + 1, "paused", moved, since + after
         elif what == "stop":
-            state = "stopped"
+            state, drawn = "stopped", moved
         seen.append(moved)
-    return moved, pauses, paused, seen
+    return seen[-1], pauses, paused, seen
 
 
 def test_late_frames_are_counted_by_the_rhythm_learnt_before(page: Page):

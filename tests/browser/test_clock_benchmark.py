@@ -40,23 +40,34 @@ def test_what_is_stored_is_what_was_on_screen_at_the_press(site: Site, visit: Vi
     assert "as stored" in clock.table(taken)
 
 
-def test_a_clock_that_stops_late_is_found_out(site: Site, visit: Visit):
+def test_a_clock_that_stops_early_is_found_out(site: Site, visit: Visit):
     def falsify(route: Route) -> None:
         source = route.fetch().text()
         route.fulfill(
-            body=source.replace("stop(time) {", "stop(time) { time += 50;"),
+            body=source.replace("stop(time) {", "stop(time) { time -= 50;"),
             content_type="text/javascript",
         )
 
     page = visit()
     page.route("**/clock.js", falsify)
     errors_ms = [stop.error_ms for stop in stops(page, site, 2)]
-    assert errors_ms == pytest.approx([50, 50], abs=FRAME_MS)
+    assert errors_ms == pytest.approx([-50, -50], abs=FRAME_MS)
+
+
+def test_a_press_on_a_frozen_page_is_stored_as_what_was_on_screen(site: Site, visit: Visit):
+    page, rng = visit(), np.random.default_rng(1)
+    taken = clock.take_stops(page, site.database, ["keyboard"] * 2, rng, frozen_ms=600)
+    assert [stop.error_ms for stop in taken] == pytest.approx([0] * 2, abs=FRAME_MS)
+    assert all(stop.press_ms - stop.seen.position_ms > 100 for stop in taken)
+    assert all(stop.clamped for stop in taken)
+    assert "2/2" in clock.frozen_table({600: taken})
 
 
 def test_too_few_stops_and_too_large_errors_are_said():
-    seen = onlooker.Sight(position_ms=2000, pressed_ms=5000, handled_ms=1, held_ms=90, dropped=0)
-    good = clock.Stop(seen, sent_ms=4999, stored_ms=2000.1, dropped=0)
+    seen = onlooker.Sight(
+        2000, pressed_ms=5000, handled_ms=1, held_ms=90, since_frame_ms=9, dropped=0
+    )
+    good = clock.Stop(seen, 4999, stored_ms=2000.1, press_ms=2000.1, dropped=0, clamped=False)
     bad = dataclasses.replace(good, stored_ms=2040)
     assert clock.shortcomings([good] * 20, 20) == []
     assert clock.shortcomings([], 20) == ["Measured 0 of 20 stops."]

@@ -61,6 +61,8 @@ def test_a_hidden_tab_pauses_and_motion_time_does_not_run(
     assert list(at.values()) == sorted(at.values())
     assert at["visible"] - at["hidden"] >= LEAST_HIDDEN_MS
     assert row["pauses"] == 1
-    assert row["paused_ms"] == pytest.approx(at["continued"] - at["hidden"], abs=0.2)
+    # From where the robot stood, a frame or more before the browser says that it hid the page.
+    assert 0 <= row["paused_ms"] - (at["continued"] - at["hidden"]) < LEAST_HIDDEN_MS
     in_motion = at["stopped"] - at["played"] - row["paused_ms"]
-    assert row["stop_time_ms"] == pytest.approx(in_motion, abs=0.2)
+    assert row["press_ms"] == pytest.approx(in_motion, abs=0.2)
+    assert row["stop_time_ms"] <= row["press_ms"]

@@ -66,6 +66,9 @@ def test_whoever_went_on_in_another_browser_is_told_here(site: Site, visit: Visi
     walk.play(here, 3 * STEP_MS)
     elsewhere = visit()
     elsewhere.goto(link)
+    expect(elsewhere.get_by_role("heading", level=1)).to_have_text("You began in another browser")
+    walk.phase(here, "moving")  # nobody has gone on anywhere yet
+    elsewhere.get_by_role("button", name="Go on here").click()
     walk.phase(elsewhere, "paused")
     expect(here.get_by_role("heading", level=1)).to_have_text("You went on in another browser")
     (row,) = site.trials()
@@ -118,3 +121,35 @@ def test_of_two_tabs_opened_in_the_same_instant_one_plays_and_the_other_is_told(
     walk.answer(playing, "E", 4)
     walk.round_is(playing, 2)
     assert [row["guess"] for row in site.trials()] == ["E"]
+
+
+def test_two_people_in_one_browser_never_answer_for_each_other(
+    site: Site, visit: Visit, guard: Guard
+):
+    guard.expected = ("409",)
+    link = "/?PROLIFIC_PID=5f1e0c2a9b3d4e6f7a8b9c{}&STUDY_ID=s1&SESSION_ID=t1"
+    ann = visit()
+    walk.reach_trials(ann, link.format("01"))
+    walk.play(ann, STEP_MS)
+    bob = ann.context.new_page()
+    walk.reach_trials(bob, link.format("02"))
+    ann.bring_to_front()
+    if ann.locator("#stage").get_attribute("data-phase") == "paused":
+        ann.click("#play")
+    walk.phase(ann, "moving")
+    walk.stop(ann)
+    told = ann.get_by_role("heading", name="Somebody else has begun in this browser")
+    expect(told).to_be_visible()
+    assert [row["stop_time_ms"] for row in site.trials()] == [None]
+    bob.bring_to_front()
+    walk.play(bob, STEP_MS)
+    walk.stop(bob)
+    walk.answer(bob, "B", 2)
+    walk.round_is(bob, 2)
+    assert [row["guess"] for row in site.trials()] == [None, "B"]
+    ann.goto(link.format("01"))
+    ann.get_by_role("button", name="Go on here").click()
+    walk.phase(ann, "stopped")  # the stop that had waited was delivered
+    walk.answer(ann, "A", 7)
+    walk.round_is(ann, 2)
+    assert [row["guess"] for row in site.trials()] == ["A", "B"]

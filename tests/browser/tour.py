@@ -18,6 +18,10 @@ def tour(page: Page) -> Iterator[str]:
     yield "no consent"
     page.goto("/nowhere")
     yield "error"
+    page.goto("/?PROLIFIC_PID=null")
+    yield "link not filled in"
+    page.goto("/no-consent?preview=1")
+    yield "no consent, as a preview"
     page.goto("/?preview=1")
     yield "consent, as a preview"
     page.goto(LINK.format("5f1e0c2a9b3d4e6f7a8b9c01"))
@@ -28,6 +32,10 @@ def tour(page: Page) -> Iterator[str]:
     page.get_by_role("button", name="Continue").click()
     page.get_by_role("alert").wait_for()
     yield "about you, with errors"
+    page.evaluate("document.querySelector('[name=participant]').value = 'another'")
+    page.get_by_role("button", name="Continue").click()
+    page.get_by_role("heading", name="Somebody else").wait_for()
+    yield "somebody else's turn"
     yield from _practice_and_rounds(page)
     yield from _endings(page)
 
@@ -73,7 +81,7 @@ def _practice_and_rounds(page: Page) -> Iterator[str]:
     page.locator("input[name=confidence][value='6']").check()
     yield "round, answered"
     page.evaluate("document.getElementById('rounds').hidden = true")
-    for notice in ("other-tab", "trouble"):
+    for notice in ("other-tab", "other-person", "trouble"):
         page.evaluate("id => (document.getElementById(id).hidden = false)", notice)
         yield f"round, {notice}"
         page.evaluate("id => (document.getElementById(id).hidden = true)", notice)
@@ -103,6 +111,9 @@ def _endings(page: Page) -> Iterator[str]:
     session = page.context.cookies()
     page.context.clear_cookies()
     page.goto(link)  # the link in what looks like another browser
+    yield "go on here"
+    page.get_by_role("button", name="Go on here").click()
+    page.wait_for_url("**/practice")
     page.context.clear_cookies()
     page.context.add_cookies(session)  # type: ignore[arg-type]
     page.goto("/practice")

@@ -1,0 +1,18 @@
+"""The log: whole for whoever takes part, and bounded for whoever floods it."""
+
+from app import event_log
+from app.tables import events, trials
+from tests import messages
+
+
+def test_nobodys_log_grows_without_end_and_no_answer_is_held_back(browser, rows, monkeypatch):
+    monkeypatch.setattr(event_log, "MOST_EVENTS", 60)
+    browser.reach_trials()
+    for _ in range(30):
+        flood = {"key": messages.key(), "events": [messages.event("resized")] * 5}
+        assert browser.send("/api/events", flood).status_code == 200
+    assert len(rows(events)) == 60
+    assert [row.type for row in rows(events)][-1] == "log_full"
+    assert browser.finish_trial(1, "B").json()["trial"]["index"] == 2
+    assert rows(trials)[0].guess == "B"
+    assert len(rows(events)) == 60
