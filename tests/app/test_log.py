@@ -97,7 +97,7 @@ def test_no_log_says_whom_anything_happened_to(tmp_path):
     said = log.read_text()
     for table in TABLES:
         assert f"no such table: {table}" in said or f"no such table: main.{table}" in said
-    assert "malformed" in said
+    assert "is damaged" in said
     assert len(secrets) >= len(SECRETS) + 4
     assert [secret for secret in secrets if secret in said] == []
 
