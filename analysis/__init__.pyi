@@ -30,5 +30,7 @@ from .publish import write_report as write_report
 from .reader import read_dataset as read_dataset
 from .results import Results as Results
 from .results import analyse_path as analyse_path
+from .spreadsheet import spreadsheet_text as spreadsheet_text
 from .tables import read_table as read_table
 from .tables import write_table as write_table
+from .tables import write_tables as write_tables

@@ -44,6 +44,11 @@ class Column:
     later: bool = False
 
     @property
+    def is_text(self) -> bool:
+        """Whether the cells are texts, which a spreadsheet may take for formulas."""
+        return self.kind in (Kind.TEXT, Kind.JSON)
+
+    @property
     def dtype(self) -> DataType:
         """Type of the column in a polars frame."""
         import polars as pl

@@ -23,7 +23,7 @@ from .contract import PARTICIPANTS, TRIALS
 from .errors import AnalysisError, TableError
 from .mapping import TableMapping
 from .participant_rules import participant_problems
-from .scanning import FORMATS, is_empty_jsonl, scan, typed
+from .scanning import FORMATS, is_empty_jsonl, scan, typed, unescaped
 from .tables import read_rows
 from .trial_rules import membership_problems, trial_problems
 from .validation import ROW, column_problems, lacking, raise_first
@@ -124,12 +124,13 @@ def _read_trials(
     table = _table_of(mapping, sources)
     present = [column for column in table.columns if column.name in sources]
     raw = raw.select(ROW, *(pl.col(theirs).alias(ours) for ours, theirs in sources.items()))
-    trials, problems = typed(raw, present, path)
+    exported = _is_export(sources)
+    trials, problems = typed(unescaped(raw, present, path) if exported else raw, present, path)
     if trials.is_empty():
         raise TableError(path.name, "at least one trial", "no rows")
     trials = mapping.translated(trials)
     unread = [problem.column for problem in problems]
-    optional = [*unread, *(() if _is_export(sources) else ANSWERS)]
+    optional = [*unread, *(() if exported else ANSWERS)]
     problems += column_problems(trials, table, optional) + trial_problems(trials)
     raise_first(path.name, problems, sources)
     renamed = tuple((theirs, ours) for ours, theirs in sources.items() if theirs != ours)

@@ -1,4 +1,4 @@
-"""How long `export` takes and how much memory, from a database of as many participants as asked for.
+"""How long `export` takes and how much memory, of as many participants as asked for.
 
 Example: python -m tests.benchmarks.export --participants 10000
 
