@@ -6,6 +6,7 @@ from .columns import Table as Table
 from .contract import CONDITIONS as CONDITIONS
 from .contract import EVENTS as EVENTS
 from .contract import PARTICIPANTS as PARTICIPANTS
+from .contract import POINTER_TYPES as POINTER_TYPES
 from .contract import REFERENCE as REFERENCE
 from .contract import STATUSES as STATUSES
 from .contract import TABLES as TABLES

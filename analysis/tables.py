@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
@@ -20,13 +21,32 @@ from .errors import TableError
 from .files import folder_for_writing, replacing
 from .scanning import FORMATS, is_empty_jsonl, scan, typed, unescaped
 from .spreadsheet import as_spreadsheet_text
-from .validation import ROW, column_problems, lacking, raise_first
+from .validation import (
+    ROW,
+    Oddity,
+    column_problems,
+    lacking,
+    raise_first,
+    without_odd_values,
+)
 
 _TIME_FORMAT = "%Y-%m-%dT%H:%M:%S%.6fZ"
 _BATCH = 5_000
 """Rows in memory at once."""
 
 Rows = Iterable[Mapping[str, Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class TableRead:
+    """A table as read: typed, with `ROW`, and all columns of its declaration.
+
+    `recorded` names the columns that the file has, `oddities` what it holds that must not be.
+    """
+
+    frame: pl.DataFrame
+    recorded: tuple[str, ...]
+    oddities: tuple[Oddity, ...] = ()
 
 
 def write_table(table: Table, rows: Rows, folder: Path) -> list[Path]:
@@ -106,18 +126,18 @@ def frame_of(table: Table, rows: Sequence[Mapping[str, Any]], first: int = 1) ->
 def read_table(table: Table, path: Path) -> pl.DataFrame:
     """Read one file of the export, hold it to its contract and return it with `table.schema`.
 
-    Columns that came later than the version that made the file are empty.
+    Columns that came later than the version that made the file are empty, and so is what lenient
+    columns must not hold.
     TableError names file, row and column of the first problem and how many more there are.
     """
-    frame = read_rows(table, path)
-    return frame.drop(ROW)
+    return read_rows(table, path).frame.drop(ROW)
 
 
-def read_rows(table: Table, path: Path) -> pl.DataFrame:
-    """Do as `read_table` and keep the column `ROW`, for checks against other tables."""
+def read_rows(table: Table, path: Path) -> TableRead:
+    """Do as `read_table`; also return what is odd, and the rows' numbers for further checks."""
     empty = pl.DataFrame(schema={ROW: pl.Int64(), **table.schema})
     if is_empty_jsonl(path):
-        return empty
+        return TableRead(empty, table.names)
     raw, names = scan(path)
     if missing := [name for name in table.always if name not in names]:
         raise lacking(path.name, missing, names)
@@ -126,7 +146,9 @@ def read_rows(table: Table, path: Path) -> pl.DataFrame:
     # a cell that could not be read is not missing as well
     unread = [problem.column for problem in problems]
     raise_first(path.name, problems + column_problems(frame, table, unread))
-    return pl.concat([empty, frame], how="diagonal")
+    frame, oddities = without_odd_values(frame, table, path.name)
+    whole = pl.concat([empty, frame], how="diagonal")
+    return TableRead(whole, tuple(column.name for column in present), tuple(oddities))
 
 
 def _series(table: Table, column: Column, values: list[Any]) -> pl.Series:
