@@ -13,6 +13,7 @@ from sqlalchemy import Connection
 from analysis import prediction_time_s, too_fast
 from app import books
 from app.answering import score_trial
+from app.event_log import PLAYED_ELSEWHERE
 from app.quality import alike, first_decision_s, never_moved_pointer, times_s
 from app.repository import Record
 from app.schemas import pointer_type
@@ -22,9 +23,6 @@ from app.trial_times import TrialTimes, are_impossible, is_impossible, server_st
 from policies import Stimulus
 
 Row = dict[str, Any]
-
-PLAYED_ELSEWHERE = "played_elsewhere"
-"""Event of a trial whose animation another browser of the participant had begun to play."""
 
 
 @dataclass(frozen=True)
