@@ -6,6 +6,7 @@ from .columns import Table as Table
 from .contract import CONDITIONS as CONDITIONS
 from .contract import EVENTS as EVENTS
 from .contract import PARTICIPANTS as PARTICIPANTS
+from .contract import POINTER_TYPES as POINTER_TYPES
 from .contract import REFERENCE as REFERENCE
 from .contract import STATUSES as STATUSES
 from .contract import TABLES as TABLES
@@ -30,5 +31,7 @@ from .publish import write_report as write_report
 from .reader import read_dataset as read_dataset
 from .results import Results as Results
 from .results import analyse_path as analyse_path
+from .spreadsheet import spreadsheet_text as spreadsheet_text
 from .tables import read_table as read_table
 from .tables import write_table as write_table
+from .tables import write_tables as write_tables

@@ -9,8 +9,12 @@ _INTRODUCTION = """\
 Each table comes as `.csv` (UTF-8, comma-separated), `.jsonl` (one JSON object per line) and
 `.parquet`; all three hold the same values. Times of day are the server's, in UTC, written as
 ISO 8601 (`2025-03-01T09:30:00.000000Z`). A missing value is an empty cell in CSV and `null`
-elsewhere; an empty text counts as missing. Texts typed by participants are exported as they
-came: import them into a spreadsheet as text, never as formulas.
+elsewhere; an empty text counts as missing.
+
+Texts are exported as they came, but for those that a spreadsheet would run as a formula: in CSV
+alone, a text that begins with `=`, `+`, `-`, `@`, a tab or the end of a line, after any number of
+apostrophes, has one apostrophe more in front (`'=1+1` stands for `=1+1`). Whoever reads the CSV
+by a program takes it off again, as `goalguess analyse` does; numbers never have one.
 """
 
 

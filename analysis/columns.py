@@ -28,7 +28,9 @@ class Column:
     `low` and `high` are inclusive, `above` is an exclusive lower bound, `choices` lists all
     values of a text column, `letter` asks for one of A-Z. `nullable` columns may be empty; an
     empty text is a missing value, in every file format. `later` columns came after the first
-    exports were made: a file without them is as good, and is read as if they were empty.
+    exports were made: a file without them is as good, and is read as if they were empty. `lenient`
+    columns describe how somebody took part, and no test hangs on them: a value outside of what is
+    allowed is read as if it were empty, and told, where any other column refuses the file.
     """
 
     name: str
@@ -42,6 +44,12 @@ class Column:
     letter: bool = False
     nullable: bool = False
     later: bool = False
+    lenient: bool = False
+
+    @property
+    def is_text(self) -> bool:
+        """Whether the cells are texts, which a spreadsheet may take for formulas."""
+        return self.kind in (Kind.TEXT, Kind.JSON)
 
     @property
     def dtype(self) -> DataType:

@@ -25,6 +25,8 @@ STATUSES = (
     "withdrawn",
 )
 
+POINTER_TYPES = ("mouse", "touch", "pen", "keyboard", "other")
+
 TEXT, JSON = Kind.TEXT, Kind.JSON
 INTEGER, NUMBER = Kind.INTEGER, Kind.NUMBER
 BOOLEAN, TIME = Kind.BOOLEAN, Kind.TIME
@@ -190,8 +192,10 @@ PARTICIPANTS = Table(
         Column(
             "pointer_type",
             TEXT,
-            "How the page is used: mouse, touch, pen, keyboard or other.",
+            "How Play was pressed; other if the browser calls it by a name of its own.",
+            choices=POINTER_TYPES,
             nullable=True,
+            lenient=True,
         ),
         _SIMULATED,
         _PREVIEW,

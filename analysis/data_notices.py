@@ -16,6 +16,13 @@ NO_RESULT = ("synthetic_data", "simulated_included")
 _SYNTHETIC_SHA256 = "4c6b0d3b083d3bf298a6a4e1cb210b924cae5c2963fcca90e9a3deeb4ea47e94"
 """Of the table of 1,500 trials that was made up because the authors' data are not published."""
 
+_ODD = {
+    "values_emptied": "Values that cannot be are read as empty; no test takes them.",
+    "times_missing": "Times of a page are empty although a later one was finished, as where the "
+    "server's clock was set back; no test takes them.",
+}
+"""What is said of each kind of oddity."""
+
 _NAMED = 5
 """So many names are written out; the rest are counted."""
 
@@ -35,6 +42,8 @@ def data_notices(data: Dataset) -> list[Notice]:
         *_synthetic(data),
         *_selection(data),
         *_exclusions(data),
+        *_impossible_times(data),
+        *_oddities(data),
         *_several_studies(data),
         *_few_clusters(data),
         *_scenarios_not_shared(data),
@@ -71,6 +80,38 @@ def _exclusions(data: Dataset) -> list[Notice]:
         n = len(each.participants)
         text = f"Participants excluded by the plan, who {each.exclusion.reason}: {n}."
         found.append(Notice("participants_excluded", each.exclusion.rule, text))
+    return found
+
+
+def _impossible_times(data: Dataset) -> list[Notice]:
+    """Whoever answers by a program sends times that no clock but its own confirms."""
+    people, trials = set(), 0
+    for rows in (data.trials, data.participants):
+        if rows is not None and "impossible_time" in rows.columns:
+            flagged = rows.filter("impossible_time")
+            people |= set(flagged["participant"])
+            trials += len(flagged) if rows is data.trials else 0
+    if not people:
+        return []
+    text = (
+        f"Times that cannot be: {len(people)} of the participants analysed and {trials} of the "
+        "trials have impossible_time, motion watched for longer than the server's clock allows or "
+        "stopped before what had been seen, as by a program. All are in the numbers; the rule "
+        "impossible_time of a plan leaves such participants out."
+    )
+    return [Notice("impossible_time", "participants", text)]
+
+
+def _oddities(data: Dataset) -> list[Notice]:
+    """What one odd row says is told instead of refusing the file."""
+    found = []
+    for code, said in _ODD.items():
+        rows = [
+            f"{odd.column} in {odd.rows} of {odd.file}" for odd in data.oddities if odd.code == code
+        ]
+        if rows:
+            text = f"{said} Rows: {', '.join(rows)}."
+            found.append(Notice(code, "trials and participants", text))
     return found
 
 

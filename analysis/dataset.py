@@ -14,6 +14,7 @@ from .mapping import TableMapping
 from .plan import Plan
 from .statistics.outcome import Clusters, Outcome
 from .study import Source
+from .validation import Oddity
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Dataset:
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
     pairs the file's column names with those of the contract, by `mapping` or because they are
     understood without one. `exported` is whether Goalguess made the file of trials, whose times
-    then count motion only.
+    then count motion only. `oddities` are of the whole files.
     """
 
     plan: Plan
@@ -47,6 +48,7 @@ class Dataset:
     flow: Flow
     renamed: tuple[tuple[str, str], ...]
     exported: bool
+    oddities: tuple[Oddity, ...]
     mapping: TableMapping
 
     @property

@@ -83,6 +83,11 @@ def failed_control_question(tries_above: int) -> pl.Expr:
     return pl.col("control_tries").max() > tries_above
 
 
+def impossible_time() -> pl.Expr:
+    """A trial, or all together, took less time than the motion that was watched by their times."""
+    return pl.col("impossible_time").any()
+
+
 RULES = {
     "incomplete": Rule(incomplete, "answered fewer than {fewer_than} trials", {"fewer_than": int}),
     "too_fast_trials": Rule(
@@ -100,6 +105,7 @@ RULES = {
         {"tries_above": int},
         PARTICIPANTS.name,
     ),
+    "impossible_time": Rule(impossible_time, "sent times that cannot be", table=PARTICIPANTS.name),
 }
 """Every rule that a plan may name."""
 

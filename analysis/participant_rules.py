@@ -1,13 +1,11 @@
-"""Rules between the cells of the participants table."""
+"""Rules between the cells of the participants table, and what an honest row may lack."""
 
 from __future__ import annotations
-
-from itertools import pairwise
 
 import polars as pl
 
 from .contract import COMPLETED
-from .validation import Problem, broken
+from .validation import Oddity, Problem, broken
 
 _PAGES = ("about_you_s", "instructions_s", "practice_s", "trials_s")
 """In the order in which participants come to them."""
@@ -37,14 +35,6 @@ def participant_problems(participants: pl.DataFrame) -> list[Problem]:
             name,
             "trials_answered",
         )
-    for before, page in pairwise(_PAGES):
-        found += broken(
-            participants,
-            pl.col(page).is_not_null() & pl.col(before).is_null(),
-            "page_before_its_turn",
-            page,
-            f"nothing where {before} is empty",
-        )
     found += broken(
         participants,
         pl.col("trials_s").is_not_null() & (pl.col("status") != COMPLETED),
@@ -55,3 +45,21 @@ def participant_problems(participants: pl.DataFrame) -> list[Problem]:
         "status",
     )
     return found
+
+
+def missing_times(participants: pl.DataFrame, file: str) -> list[Oddity]:
+    """Return the times of pages that are empty although a later page was finished.
+
+    So it is where the server's clock was set back meanwhile.
+    """
+    finished = {page: pl.col(page).is_not_null() for page in _PAGES}
+    # An older export has none of the times.
+    timed = pl.any_horizontal(finished.values())
+    later = timed & (pl.col("status") == COMPLETED)
+    found = []
+    for page in reversed(_PAGES):
+        rows = participants.filter(later & ~finished[page]).height
+        if rows:
+            found.append(Oddity("times_missing", file, page, rows))
+        later |= finished[page]
+    return found[::-1]

@@ -1,10 +1,13 @@
-"""The columns on data quality: signs of how attentively somebody took part."""
+"""The columns on data quality: signs of how attentively somebody took part, and of odd times."""
 
 from functools import partial
 
 from .columns import Column, Kind
 
-_added = partial(Column, later=True)
+_added = partial(Column, later=True, lenient=True)
+_sign = partial(_added, kind=Kind.BOOLEAN, nullable=True)
+_lasted = partial(_added, kind=Kind.NUMBER, unit="s", low=0, nullable=True)
+_OLDER = "Empty in rows of older versions."
 
 OF_TRIALS = (
     _added(
@@ -24,24 +27,57 @@ OF_TRIALS = (
         low=0,
     ),
     _added("too_fast", Kind.BOOLEAN, "Whether stop_time_s is less than first_decision_s."),
+    _lasted(
+        "press_s",
+        meaning="Where in the motion Stop was pressed by the page's clock, before anything was "
+        f"capped. {_OLDER}",
+    ),
+    _lasted(
+        "last_frame_s",
+        meaning=f"Where in the motion the last frame was that the page had drawn by then. {_OLDER}",
+    ),
+    _lasted("frame_interval_s", meaning=f"Usual time from one frame to the next. {_OLDER}"),
+    _lasted(
+        "server_stretch_s",
+        meaning="The longest motion that the server's clock can confirm: until it learned of the "
+        "stop, from when the page says that the motion began, but never from before the animation "
+        "was given out. Empty if that clock was set back in between.",
+    ),
+    _sign(
+        "impossible_time",
+        meaning="Whether stop_time_s exceeds what the server's clock can confirm by more than 2 s, "
+        "or lies before what the page had reported as seen. Empty for simulated participants, and "
+        "where it cannot be judged.",
+    ),
+    _sign(
+        "times_clamped",
+        meaning="Whether the page sent a time that could not be, which is stored as the nearest "
+        f"one that could. {_OLDER}",
+    ),
+    _added(
+        "watched_elsewhere",
+        Kind.BOOLEAN,
+        "Whether another browser of the participant had begun to play the animation and could not "
+        "say so in time: parts may have been seen before.",
+    ),
 )
 
 _count = partial(_added, kind=Kind.INTEGER, low=0)
-_alike = partial(_added, kind=Kind.BOOLEAN, nullable=True)
-_lasted = partial(_added, kind=Kind.NUMBER, unit="s", low=0, nullable=True)
-_BY_SERVER = "by the server's clock, breaks included; empty if not finished."
+_BY_SERVER = (
+    "by the server's clock, breaks included; empty if not finished, or if that clock was set back."
+)
 
 OF_PARTICIPANTS = (
-    _alike(
+    _sign(
         "never_moved_pointer",
         meaning="Whether pointer_moved is false in all answered trials, as for whoever plays by "
         "keyboard alone. Empty without trials, or if it is true in none and empty in some.",
     ),
-    _alike(
+    _sign(
         "same_guess",
         meaning="Whether all answered trials have the same guess; empty with fewer than two.",
     ),
-    _alike(
+    _sign(
         "same_confidence",
         meaning="Whether all answered trials have the same confidence; empty with fewer than two.",
     ),
@@ -61,5 +97,21 @@ OF_PARTICIPANTS = (
     ),
     _lasted(
         "trials_s", meaning=f"From the control question passed to the last answer, {_BY_SERVER}"
+    ),
+    _sign(
+        "recruited",
+        meaning="Whether the participant came with a recruiter's id, which is never exported. "
+        "Empty for whoever withdrew.",
+    ),
+    _sign(
+        "pilot_before",
+        meaning="Whether somebody with the same recruiter's id had taken part as a pilot before. "
+        "Empty for whoever withdrew, and in rows of older versions.",
+    ),
+    _sign(
+        "impossible_time",
+        meaning="Whether any answered trial has impossible_time, or all together, with their "
+        "lead-ins, are longer by more than 2 s than the time in which they were answered. Empty "
+        "for simulated participants, and where it cannot be judged.",
     ),
 )

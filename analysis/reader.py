@@ -39,7 +39,8 @@ def read_dataset(
     file = study.sources[0].file
     _check_arms(plan, trials, file, _why_empty(plan, len(study.trials) - len(chosen), others))
     trials = trials.with_columns(treated=pl.col("condition") == plan.arms.treatment.condition)
-    excluded = exclude(plan.exclusions, trials, participants, plan.file)
+    recorded = None if participants is None else participants.select(study.recorded)
+    excluded = exclude(plan.exclusions, trials, recorded, plan.file)
     out = [name for each in excluded for name in each.participants]
     kept = ~pl.col("participant").is_in(out)
     analysed = trials.filter(kept)
@@ -60,6 +61,7 @@ def read_dataset(
         flow=participant_flow(plan, trials, participants, others_by_condition, excluded),
         renamed=study.renamed,
         exported=study.exported,
+        oddities=study.oddities,
         mapping=mapping,
     )
 

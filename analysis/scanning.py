@@ -12,6 +12,7 @@ import polars as pl
 
 from .columns import Column, Kind
 from .errors import AnalysisError, TableError
+from .spreadsheet import from_spreadsheet_text
 from .validation import ROW, Problem
 
 FORMATS = (".csv", ".parquet", ".jsonl")
@@ -49,6 +50,15 @@ def scan(path: Path) -> tuple[pl.LazyFrame, list[str]]:
         raise _unreadable(path, error) from error
     numbered = raw.with_row_index(ROW, offset=first_row)
     return numbered.filter(~pl.all_horizontal(pl.col(names).is_null())), names
+
+
+def unescaped(raw: pl.LazyFrame, columns: Sequence[Column], path: Path) -> pl.LazyFrame:
+    """Give the texts of an export of ours back as they were before they went into a CSV."""
+    if path.suffix != ".csv":
+        return raw
+    return raw.with_columns(
+        from_spreadsheet_text(pl.col(column.name)) for column in columns if column.is_text
+    )
 
 
 def is_empty_jsonl(path: Path) -> bool:

@@ -22,11 +22,18 @@ from .columns import Table
 from .contract import PARTICIPANTS, TRIALS
 from .errors import AnalysisError, TableError
 from .mapping import TableMapping
-from .participant_rules import participant_problems
-from .scanning import FORMATS, is_empty_jsonl, scan, typed
+from .participant_rules import missing_times, participant_problems
+from .scanning import FORMATS, is_empty_jsonl, scan, typed, unescaped
 from .tables import read_rows
 from .trial_rules import membership_problems, trial_problems
-from .validation import ROW, column_problems, lacking, raise_first
+from .validation import (
+    ROW,
+    Oddity,
+    column_problems,
+    lacking,
+    raise_first,
+    without_odd_values,
+)
 
 NEEDED = (
     "participant",
@@ -67,7 +74,8 @@ class Study:
 
     Rows are in the order of participants and their trials, because the last digits of sums depend
     on the order. `renamed` pairs the file's column names with those of the contract; `exported` is
-    whether Goalguess made the file of trials, whose times then count motion only.
+    whether Goalguess made the file of trials, whose times then count motion only. `recorded` names
+    the columns that the file of participants has, and `oddities` what is odd in either file.
     """
 
     trials: pl.DataFrame
@@ -75,6 +83,8 @@ class Study:
     sources: tuple[Source, ...]
     renamed: tuple[tuple[str, str], ...]
     exported: bool
+    oddities: tuple[Oddity, ...]
+    recorded: tuple[str, ...] = ()
 
 
 def read_study(path: Path, mapping: TableMapping) -> Study:
@@ -83,16 +93,28 @@ def read_study(path: Path, mapping: TableMapping) -> Study:
     TableError for the first broken rule, TomlError for a mapping that does not fit the file.
     """
     trials_path, participants_path = _find(path)
-    trials, renamed = _read_trials(trials_path, mapping)
-    source, exported = _source(trials_path, trials), _is_export(trials.columns)
+    trials, renamed, oddities = _read_trials(trials_path, mapping)
+    alone = Study(
+        trials=_in_order(trials, TRIALS),
+        participants=None,
+        sources=(_source(trials_path, trials),),
+        renamed=renamed,
+        exported=_is_export(trials.columns),
+        oddities=oddities,
+    )
     if participants_path is None:
-        return Study(_in_order(trials, TRIALS), None, (source,), renamed, exported)
-    people = read_rows(PARTICIPANTS, participants_path)
-    raise_first(participants_path.name, participant_problems(people))
-    raise_first(trials_path.name, membership_problems(trials, people, participants_path.name))
-    sources = source, _source(participants_path, people)
-    in_order = _in_order(trials, TRIALS), _in_order(people, PARTICIPANTS)
-    return Study(*in_order, sources, renamed, exported)
+        return alone
+    read = read_rows(PARTICIPANTS, participants_path)
+    people, file = read.frame, participants_path.name
+    raise_first(file, participant_problems(people))
+    raise_first(trials_path.name, membership_problems(trials, people, file))
+    return replace(
+        alone,
+        participants=_in_order(people, PARTICIPANTS),
+        sources=(*alone.sources, _source(participants_path, people)),
+        oddities=(*oddities, *read.oddities, *missing_times(people, file)),
+        recorded=read.recorded,
+    )
 
 
 def _find(path: Path) -> tuple[Path, Path | None]:
@@ -115,7 +137,8 @@ def _in_any_format(folder: Path, name: str) -> Path | None:
 
 def _read_trials(
     path: Path, mapping: TableMapping
-) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...]]:
+) -> tuple[pl.DataFrame, tuple[tuple[str, str], ...], tuple[Oddity, ...]]:
+    """Return the trials, which columns have other names in the file, and what is odd in it."""
     if is_empty_jsonl(path):
         raise AnalysisError(f"{path.name}: expected at least one trial, got an empty file")
     raw, names = scan(path)
@@ -124,16 +147,17 @@ def _read_trials(
     table = _table_of(mapping, sources)
     present = [column for column in table.columns if column.name in sources]
     raw = raw.select(ROW, *(pl.col(theirs).alias(ours) for ours, theirs in sources.items()))
-    trials, problems = typed(raw, present, path)
+    exported = _is_export(sources)
+    trials, problems = typed(unescaped(raw, present, path) if exported else raw, present, path)
     if trials.is_empty():
         raise TableError(path.name, "at least one trial", "no rows")
     trials = mapping.translated(trials)
     unread = [problem.column for problem in problems]
-    optional = [*unread, *(() if _is_export(sources) else ANSWERS)]
-    problems += column_problems(trials, table, optional) + trial_problems(trials)
-    raise_first(path.name, problems, sources)
+    problems += column_problems(trials, table, [*unread, *(() if exported else ANSWERS)])
+    trials, oddities = without_odd_values(trials, table, path.name)
+    raise_first(path.name, problems + trial_problems(trials), sources)
     renamed = tuple((theirs, ours) for ours, theirs in sources.items() if theirs != ours)
-    return _with_measures(trials), renamed
+    return _with_measures(trials), renamed, tuple(oddities)
 
 
 def _is_export(columns: Collection[str]) -> bool:

@@ -26,6 +26,16 @@ class Problem:
     got: str
 
 
+@dataclass(frozen=True)
+class Oddity:
+    """What is odd in so many rows of a file and refuses nothing; `code` is that of its notice."""
+
+    code: str
+    file: str
+    column: str
+    rows: int
+
+
 def raise_first(
     file: str, problems: Sequence[Problem], names: Mapping[str, str] | None = None
 ) -> None:
@@ -75,7 +85,8 @@ def column_problems(
 ) -> list[Problem]:
     """Hold a typed frame with `ROW` to its table: missing cells, allowed values, the key.
 
-    Only columns in the frame are looked at; `optional` ones may be empty like nullable ones.
+    Only columns in the frame are looked at; `optional` ones may be empty like nullable ones, and
+    what lenient ones must not hold is for `without_odd_values`.
     """
     found: list[Problem] = []
     for column in table.columns:
@@ -86,7 +97,7 @@ def column_problems(
                 frame, pl.col(column.name).is_null(), "missing", column.name, column.expected
             )
         breaks = _outside(column)
-        if breaks is not None:
+        if breaks is not None and not column.lenient:
             found += broken(frame, breaks, "not_allowed", column.name, column.expected)
     repeated = ~pl.struct(table.key).is_first_distinct()
     complete = pl.all_horizontal(pl.col(table.key).is_not_null())
@@ -99,6 +110,28 @@ def column_problems(
         *table.key,
     )
     return found
+
+
+def without_odd_values(
+    frame: pl.DataFrame, table: Table, file: str
+) -> tuple[pl.DataFrame, list[Oddity]]:
+    """Empty the cells of lenient columns that hold what they must not, and return which did."""
+    odd = {
+        column.name: breaks
+        for column in table.columns
+        if column.lenient and column.name in frame.columns
+        if (breaks := _outside(column)) is not None
+    }
+    if not odd:
+        return frame, []
+    counts = frame.select(breaks.sum().alias(name) for name, breaks in odd.items()).row(0)
+    found = [
+        Oddity("values_emptied", file, name, count)
+        for name, count in zip(odd, counts, strict=True)
+        if count
+    ]
+    emptied = (pl.when(~breaks).then(name).alias(name) for name, breaks in odd.items())
+    return frame.with_columns(emptied), found
 
 
 def _outside(column: Column) -> pl.Expr | None:

@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 from analysis import correct, score
 from app import VERSION, repository
 from app.errors import InvalidInput, NoSuchTrial, PlaceReturned, WrongStep
-from app.event_log import log_message, note
+from app.event_log import PLAYED_ELSEWHERE, log_message, note
 from app.repository import Record
 from app.schemas import ENVELOPE, Answered, Logged, Message, Played, Stopped
 from app.sessions import admitted, hashed, prove
@@ -217,7 +217,7 @@ def played_elsewhere(
     participant = repository.participant_in_session(connection, hashed(token))
     if participant is not None and message.participant in (None, participant.pseudonym):
         details = {"waited_ms": message.waited_ms}
-        note(connection, study, participant, "played_elsewhere", details, index)
+        note(connection, study, participant, PLAYED_ELSEWHERE, details, index)
 
 
 def require_trial(study: Study, index: int) -> None:

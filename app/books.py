@@ -155,10 +155,14 @@ def all_trials(connection: Connection) -> Iterable[Record]:
 
 
 def all_participants(connection: Connection) -> Iterable[Record]:
-    """Every participant with place and demographics, in order of arrival."""
+    """Every participant with place and demographics, in order of arrival.
+
+    `recruited`: whether there is a recruiter's id of theirs.
+    """
     return connection.execute(
         select(
             participants,
+            recruits.c.participant_id.is_not(None).label("recruited"),
             places.c.condition,
             places.c.dealt_at,
             places.c.played_at,
@@ -166,7 +170,23 @@ def all_participants(connection: Connection) -> Iterable[Record]:
         )
         .outerjoin(places, places.c.participant_id == participants.c.id)
         .outerjoin(demographics, demographics.c.participant_id == participants.c.id)
+        .outerjoin(recruits, recruits.c.participant_id == participants.c.id)
         .order_by(participants.c.id)
+    )
+
+
+def count_by_stream(connection: Connection) -> dict[str, int]:
+    """How many participants each stream has."""
+    counts = select(participants.c.stream, func.count()).group_by(participants.c.stream)
+    return {row[0]: row[1] for row in connection.execute(counts)}
+
+
+def events_of_types(connection: Connection, types: Iterable[str]) -> Iterable[Record]:
+    """The log's events of some types, in the order of participants and then of the log."""
+    return connection.execute(
+        select(events.c.participant_id, events.c.trial_index, events.c.type, events.c.server_time)
+        .where(events.c.type.in_(types))
+        .order_by(events.c.participant_id, events.c.id)
     )
 
 

@@ -14,8 +14,13 @@ from app.repository import Record
 from app.schemas import Message
 from app.study import Study
 
+PLAYED_ELSEWHERE = "played_elsewhere"
+"""Of a trial whose animation another browser of the participant had begun to play."""
+
 MOST_EVENTS = 5000
-"""Of one participant; whoever takes part has some hundred."""
+"""Of one participant's pages; whoever takes part has some hundred."""
+MOST_NOTES = 1000
+"""Room that is left for what the server itself has to say."""
 
 
 def note(
@@ -27,7 +32,10 @@ def note(
     index: int | None = None,
 ) -> None:
     """Log something that the server did or noticed."""
-    _append(connection, study, participant, secrets.token_hex(8), [_event(what, details, index)])
+    room = MOST_EVENTS + MOST_NOTES - repository.count_events(connection, participant.id)
+    if room > 0:
+        key, event = secrets.token_hex(8), _event(what, details, index)
+        _append(connection, study, participant, key, [event])
 
 
 def log_message(
@@ -52,8 +60,12 @@ def log_message(
     ]
     if message.mended:
         rows.append(_event("mended", message.mended, index))
-    if rows:
-        _append(connection, study, participant, message.key, rows)
+    room = MOST_EVENTS - repository.count_events(connection, participant.id) if rows else 0
+    if room <= 0:
+        return
+    if len(rows) >= room:
+        rows = [*rows[: room - 1], _event("log_full", {"left_out_from_here": True}, None)]
+    _append(connection, study, participant, message.key, rows)
 
 
 def _event(what: str, details: Mapping[str, object], index: int | None) -> dict[str, Any]:
@@ -73,11 +85,6 @@ def _append(
     key: str,
     rows: Sequence[Mapping[str, Any]],
 ) -> None:
-    room = MOST_EVENTS - repository.count_events(connection, participant.id)
-    if room <= 0:
-        return
-    if len(rows) >= room:
-        rows = [*rows[: room - 1], _event("log_full", {"left_out_from_here": True}, None)]
     shared = {
         "participant_id": participant.id,
         "message_key": key,

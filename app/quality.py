@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from datetime import datetime
 
+from app.errors import WrongStep
 from app.steps import Happening, Step, advance
 from policies import Scene, Stimulus, first_decision, scene_maze
 
@@ -27,11 +28,19 @@ def alike(answers: Sequence[object]) -> bool | None:
 def times_s(
     consented_at: datetime, happened: Iterable[tuple[Happening, datetime]]
 ) -> dict[Step, float]:
-    """Time at each step that was finished, s, breaks included, from what happened in order."""
+    """Time at each step that was finished, s, breaks included, from what happened in order.
+
+    A step during which the server's clock was set back has none; nor has any from where the log
+    tells what cannot happen.
+    """
     times: dict[Step, float] = {}
     step, since = Step.ABOUT_YOU, consented_at
     for happening, at in happened:
-        if happening != Happening.BROKE:
+        try:
+            next_step = advance(step, happening)
+        except WrongStep:
+            break
+        if happening != Happening.BROKE and at >= since:
             times[step] = (at - since).total_seconds()
-        step, since = advance(step, happening), at
+        step, since = next_step, at
     return times

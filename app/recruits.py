@@ -10,11 +10,10 @@ from pathlib import Path
 
 from sqlalchemy import Connection
 
+from analysis import spreadsheet_text
 from app import books
 from app.errors import InvalidInput
 from app.study import PARTICIPANT, Study
-
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def as_csv(people: Sequence[Recruit]) -> str:
     text = StringIO()
     writer = csv.writer(text)
     writer.writerow(NAMES)
-    writer.writerows([_inert(cell) for cell in astuple(one)] for one in people)
+    writer.writerows([spreadsheet_text(cell) for cell in astuple(one)] for one in people)
     return text.getvalue()
 
 
@@ -100,7 +99,3 @@ def write_private(file: Path, text: str) -> None:
 
 def _time(moment: datetime | None) -> str:
     return moment.strftime("%Y-%m-%dT%H:%M:%SZ") if moment else ""
-
-
-def _inert(cell: str) -> str:
-    return f"'{cell}" if cell.startswith(_FORMULA) else cell

@@ -19,6 +19,8 @@ from pydantic import (
     ValidationInfo,
 )
 
+from analysis import POINTER_TYPES
+
 MOST_MS = 1e11
 """Three years: no page is open for longer."""
 MOST_EVENTS = 200
@@ -78,9 +80,6 @@ def _short_json(details: object) -> object:
     except ValueError:
         short = False
     return details if short else {"left_out": True}
-
-
-POINTER_TYPES = ("mouse", "touch", "pen", "keyboard", "other")
 
 
 def pointer_type(sent: Any) -> str | None:

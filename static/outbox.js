@@ -136,9 +136,13 @@ export class Outbox {
   }
 }
 
-/** A message as it is sent now: it says how long it has waited. One queued before an upgrade cannot. */
+/**
+ * A message as it is sent now: it says how long it has waited. One queued before an upgrade cannot,
+ * nor one that was queued before the device's clock was set back.
+ */
 function sent({ at, body }) {
-  return at === undefined ? body : { ...body, waited_ms: tenths(Math.max(0, now() - at)) };
+  const waited = now() - at;
+  return waited >= 0 ? { ...body, waited_ms: tenths(waited) } : body;
 }
 
 function uuid() {

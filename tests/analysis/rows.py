@@ -43,6 +43,12 @@ def trial_row(participant: str, index: int, condition: str, **changes: Any) -> R
         "frames_dropped": 2,
         "pointer_moved": True,
         "first_decision_s": 2.0,
+        "last_frame_s": None,
+        "frame_interval_s": 0.0167,
+        "server_stretch_s": 30.5,
+        "impossible_time": False,
+        "times_clamped": False,
+        "watched_elsewhere": False,
         "simulated": False,
         "preview": False,
         "study_hash": "study",
@@ -55,6 +61,7 @@ def trial_row(participant: str, index: int, condition: str, **changes: Any) -> R
         "prediction_time_s": prediction_time_s(*times, was_correct),
         "score": score(was_correct, *times),
         "too_fast": too_fast(row["stop_time_s"], row["first_decision_s"]),
+        "press_s": row["stop_time_s"],
     }
     return derived | row
 
@@ -87,7 +94,10 @@ def participant_row(participant: str, condition: str | None, **changes: Any) -> 
         "about_you_s": 62.5,
         "instructions_s": 20.25,
         "practice_s": 41.0,
-        "trials_s": None,
+        "trials_s": 301.5 if changes.get("status", "completed") == "completed" else None,
+        "recruited": True,
+        "pilot_before": False,
+        "impossible_time": False,
         "user_agent": 'Browser "x", 1.0',
         "viewport_width": 1280,
         "viewport_height": 720,

@@ -88,7 +88,7 @@ def test_swapping_the_labels_mirrors_the_tests(tmp_path):
 def test_incomplete_participants_stay_in_and_are_counted_by_their_status(tmp_path):
     rows = six_participants()[:-1]
     people = participants_of(rows)
-    people[-1] |= {"status": "trials"}
+    people[-1] |= {"status": "trials", "trials_s": None}
     write_table(TRIALS, rows, tmp_path)
     write_table(PARTICIPANTS, people, tmp_path)
     found = sample(read_dataset(tmp_path))

@@ -122,14 +122,25 @@ def test_who_needed_too_many_tries_for_the_control_question_is_taken(taken_by):
     assert names(data) == [("P2",)]
 
 
+def test_who_sent_times_that_cannot_be_is_taken_and_who_cannot_be_judged_is_not(taken_by):
+    def judged(people):
+        people[1]["impossible_time"] = True
+        people[2]["impossible_time"] = None
+
+    data = taken_by(RULE.format("impossible_time"), lambda _rows: None, changed_people=judged)
+    assert names(data) == [("P2",)]
+    assert data.excluded[0].exclusion.reason == "sent times that cannot be"
+
+
 def test_every_rule_has_a_case():
-    assert {*CASES, "failed_control_question"} == set(RULES)
+    assert {*CASES, "failed_control_question", "impossible_time"} == set(RULES)
 
 
 def test_without_a_rule_in_the_plan_nobody_is_taken(taken_by):
     def everything(rows):
         hasty(rows)
         motionless(rows)
+        rows[0]["impossible_time"] = True
 
     assert default_plan().exclusions == ()
     data = taken_by("", everything)
@@ -173,6 +184,7 @@ def test_an_arm_that_exclusions_empty_is_one_clear_error(taken_by):
     [
         ("never_moved_pointer", "the column pointer_moved in the table trials"),
         ("failed_control_question", "the column control_tries in the table participants"),
+        ("impossible_time", "the column impossible_time in the table participants"),
     ],
 )
 def test_a_rule_without_its_column_is_named_by_its_place_in_the_plan(tmp_path, rule, missing):

@@ -44,7 +44,7 @@ def study(tmp_path):
         participant_row("Q9", "polmdp", status="withdrawn"),
     ]
     people = participants_of(rows)
-    people[0]["status"] = "trials"
+    people[0] |= {"status": "trials", "trials_s": None}
     people[1]["control_tries"] = 2
     write_table(TRIALS, rows, tmp_path)
     write_table(PARTICIPANTS, [*people, *others], tmp_path)

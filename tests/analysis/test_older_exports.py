@@ -10,6 +10,7 @@ from analysis import (
     PARTICIPANTS,
     TRIALS,
     TableError,
+    TomlError,
     analyse_path,
     read_dataset,
     read_table,
@@ -19,7 +20,18 @@ from analysis.reporting.as_json import as_json
 from tests.analysis.rows import edited
 
 ADDED = {
-    "trials": ["pointer_moved", "first_decision_s", "too_fast"],
+    "trials": [
+        "pointer_moved",
+        "first_decision_s",
+        "too_fast",
+        "press_s",
+        "last_frame_s",
+        "frame_interval_s",
+        "server_stretch_s",
+        "impossible_time",
+        "times_clamped",
+        "watched_elsewhere",
+    ],
     "participants": [
         "never_moved_pointer",
         "same_guess",
@@ -32,6 +44,9 @@ ADDED = {
         "instructions_s",
         "practice_s",
         "trials_s",
+        "recruited",
+        "pilot_before",
+        "impossible_time",
     ],
 }
 
@@ -70,7 +85,7 @@ def test_what_was_not_recorded_is_read_as_empty(older):
     people = read_dataset(older).participants
     assert people is not None
     assert dict(people.schema) == PARTICIPANTS.schema
-    assert people.select(ADDED["participants"]).null_count().row(0) == (6,) * 11
+    assert people.select(ADDED["participants"]).null_count().row(0) == (6,) * 14
 
 
 def test_a_single_table_is_read_with_its_schema(older):
@@ -78,6 +93,12 @@ def test_a_single_table_is_read_with_its_schema(older):
     frame = read_table(TRIALS, path)
     assert dict(frame.schema) == TRIALS.schema
     assert len(frame) == 18
+
+
+def test_a_rule_of_the_plan_about_what_was_not_recorded_is_one_clear_error(older, plan_of):
+    plan = plan_of('[[exclusions]]\nrule = "impossible_time"')
+    with pytest.raises(TomlError, match="the column impossible_time in the table participants"):
+        read_dataset(older, plan)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])

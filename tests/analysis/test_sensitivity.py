@@ -16,7 +16,7 @@ WITHOUT_INCOMPLETE = replace(THREE_TRIALS, exclusions=(Exclusion("incomplete", {
 def study(tmp_path, rows, left=(), plan=THREE_TRIALS):
     """A study of these trials, in which the participants `left` did not complete."""
     people = [
-        person | {"status": "trials" if person["participant"] in left else "completed"}
+        person | ({"status": "trials", "trials_s": None} if person["participant"] in left else {})
         for person in participants_of(rows)
     ]
     write_table(TRIALS, rows, tmp_path)

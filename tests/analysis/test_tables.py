@@ -28,10 +28,9 @@ ONE_ROW = {
     "events": event_row(1),
 }
 
-WORDS = st.text(
-    st.characters(codec="utf-8", exclude_categories=["Cs"], exclude_characters="\0\r"),
-    min_size=1,
-    max_size=20,
+LETTERS = st.characters(codec="utf-8", exclude_categories=["Cs"], exclude_characters="\0")
+WORDS = st.builds(
+    "".join, st.tuples(st.text("'=+-@\t\r", max_size=2), st.text(LETTERS, min_size=1, max_size=20))
 )
 
 

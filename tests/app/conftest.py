@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,9 @@ from httpx2 import Client, Response
 from sqlalchemy import Select, Table, select
 from starlette.testclient import TestClient
 
+from app import repository
 from app.database import Database
+from app.export import export
 from app.main import create_app
 from app.opening import open_database
 from app.schema import prepare
@@ -47,6 +50,26 @@ def database(study: Study) -> Iterator[Database]:
     database = open_database(study)
     yield database
     database.close()
+
+
+@pytest.fixture
+def write(client: TestClient, study: Study, tmp_path: Path) -> Callable[..., Any]:
+    """Exports the study; returns the numbers of rows, and the folder."""
+
+    def run(simulated: bool = False) -> tuple[dict[str, int], Path]:
+        database: Database = client.app.state.services.database  # type: ignore[attr-defined]
+        done = export(database, study, tmp_path / "out", simulated)
+        return done.rows, tmp_path / "out"
+
+    return run
+
+
+@pytest.fixture
+def wait(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
+    """The server's clock stands still, but for the seconds that a test waits."""
+    time = [datetime(2025, 3, 1, 9, 30, tzinfo=UTC)]
+    monkeypatch.setattr(repository, "now", lambda: time[-1])
+    return lambda seconds: time.append(time[-1] + timedelta(seconds=seconds))
 
 
 class Browser:

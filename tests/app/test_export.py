@@ -2,34 +2,14 @@
 
 import json
 import sqlite3
-from datetime import UTC, datetime, timedelta
 
 import polars as pl
-import pytest
 
 from analysis import EVENTS, PARTICIPANTS, TRIALS, read_dataset, read_table
-from app import repository
 from app.export import export
 from app.tables import places, trials
 from policies import first_decision, scene_maze
 from tests import messages
-
-
-@pytest.fixture
-def write(client, study, tmp_path):
-    def run(simulated=False):
-        done = export(client.app.state.services.database, study, tmp_path / "out", simulated)
-        return done.rows, tmp_path / "out"
-
-    return run
-
-
-@pytest.fixture
-def wait(monkeypatch):
-    """The server's clock stands still, but for the seconds that a test waits."""
-    time = [datetime(2025, 3, 1, 9, 30, tzinfo=UTC)]
-    monkeypatch.setattr(repository, "now", lambda: time[-1])
-    return lambda seconds: time.append(time[-1] + timedelta(seconds=seconds))
 
 
 def test_a_row_per_answered_trial_a_row_per_participant_and_the_log(

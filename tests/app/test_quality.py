@@ -98,6 +98,16 @@ def test_together_the_steps_last_from_the_consent_to_what_happened_last(gaps_s, 
     assert sum(times.values()) == (last - START).total_seconds()
 
 
+def test_a_step_during_which_the_clock_was_set_back_has_no_time():
+    times = times_s(START, happened(WHOLE_WAY, (60, -3600, 45, 300)))
+    assert times == {Step.ABOUT_YOU: 60, Step.PRACTICE: 45, Step.TRIALS: 300}
+
+
+def test_a_log_that_tells_what_cannot_happen_is_followed_until_there():
+    way = (Happening.DESCRIBED, Happening.PASSED_CONTROL, Happening.INSTRUCTED)
+    assert times_s(START, happened(way, (10, 20, 30))) == {Step.ABOUT_YOU: 10}
+
+
 def test_the_practice_ends_with_the_control_question_failed_too():
     way = (Happening.DESCRIBED, Happening.INSTRUCTED, Happening.FAILED_CONTROL)
     assert times_s(START, happened(way, (10, 20, 30)))[Step.PRACTICE] == 30
