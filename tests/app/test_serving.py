@@ -136,10 +136,11 @@ def test_a_flood_of_headers_is_refused_and_takes_no_memory(process, head):
     assert peak_mb(process.pid) - before < 8
 
 
+@pytest.mark.parametrize("end", [b"\r\n\r\n", b""], ids=["whole", "without an end"])
 @pytest.mark.parametrize("size", [serving.LARGEST_HEAD, 60_000])
-def test_a_head_that_comes_at_once_and_is_too_large_is_refused_in_words(port, size):
+def test_a_head_that_is_too_large_is_refused_in_words(port, size, end):
     with connected(port) as connection:
-        connection.sendall(GET[:-2] + b"x: " + b"a" * size + b"\r\n\r\n")
+        connection.sendall(GET[:-2] + b"x: " + b"a" * size + end)
         said = all_from(connection)
     assert said.startswith(b"HTTP/1.1 431 ")
     assert said.endswith(b"bytes of headers.")
