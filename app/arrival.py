@@ -147,6 +147,14 @@ def _same_invitation(recruit: Record | None, link: Link) -> bool:
     return began_with == (link.recruiter_study, link.recruiter_session)
 
 
+def has_own_code(connection: Connection, participant: Record) -> bool:
+    """Whether a browser may show the code of an ending: that of another submission is not its."""
+    if participant.proven:
+        return True
+    recruit = repository.recruit_of(connection, participant.id)
+    return recruit is None or recruit.recruiter_session is None
+
+
 def consent(
     connection: Connection,
     study: Study,

@@ -102,18 +102,20 @@ def fail(connection: Connection, study: Study, token: str | None, page: str | No
     repository.free_unplayed_place_of(connection, participant.id)
 
 
-def withdraw(
-    connection: Connection, study: Study, token: str | None, page: str | None = None
-) -> str:
-    """Withdraw the participant of a session, if they may; returns their stream.
-
-    NotProven in a browser that may be somebody else's.
-    """
-    participant = participant_of(connection, token, page)
+def require_way_out(study: Study, participant: Record) -> None:
+    """NotProven in a browser that may be somebody else's, StudyClosed after the end of all."""
     if not participant.proven:
         raise NotProven
     if not may_withdraw(Step(participant.step), study.settings.study_open):
         raise StudyClosed(CLOSED_TO_WITHDRAWAL)
+
+
+def withdraw(
+    connection: Connection, study: Study, token: str | None, page: str | None = None
+) -> str:
+    """Withdraw the participant of a session, if they may; returns their stream."""
+    participant = participant_of(connection, token, page)
+    require_way_out(study, participant)
     withdraw_participant(connection, study, participant)
     stream: str = participant.stream
     return stream

@@ -58,8 +58,10 @@ class Pages:
 
         `pilot` is the stream of a pilot, to whom every page says that they are one.
         """
+        # Whose page it is: the session may be another one's when the link is followed.
+        withdraw_url = self.url(f"/withdraw?participant={participant}") if can_withdraw else None
         html = self._templates.get_template(template).render(
-            participant=participant, pilot=pilot, can_withdraw=can_withdraw, **context
+            participant=participant, pilot=pilot, withdraw_url=withdraw_url, **context
         )
         return HTMLResponse(html, status, headers={"Cache-Control": "no-store"})
 

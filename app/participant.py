@@ -10,7 +10,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from fastapi.routing import APIRoute
 
-from app import answering, arrival, enrolment, repository
+from app import answering, arrival, enrolment
 from app.answering import TrialScore
 from app.arrival import Link, read_arrival, stream_of
 from app.deps import (
@@ -26,16 +26,13 @@ from app.deps import (
 )
 from app.errors import (
     CLOSED_TO_ARRIVALS,
-    CLOSED_TO_WITHDRAWAL,
     InvalidInput,
     NoSession,
-    NotProven,
     StudyClosed,
 )
 from app.questions import ABOUT_YOU, CONTROL, answers
 from app.recruiter_ids import warn_of
-from app.repository import Record
-from app.steps import ENDINGS, Step, may_withdraw
+from app.steps import ENDINGS, Step
 from app.study import PARTICIPANT, Study
 
 
@@ -192,7 +189,9 @@ async def trial(request: Request) -> Response:
 async def end(request: Request) -> Response:
     """The page of how it ended; its code is for the invitation with which it was reached."""
     participant = await participant_at(request, *ENDINGS)
-    own = OTHER_INVITATION not in request.query_params and await _may_see_code(request, participant)
+    own = OTHER_INVITATION not in request.query_params and await services(request).database.read(
+        lambda c: arrival.has_own_code(c, participant)
+    )
     context: dict[str, object] = {
         "recruiter": recruiter(request, participant.step, participant) if own else None
     }
@@ -220,11 +219,8 @@ async def fail(request: Request) -> Response:
 @router.get("/withdraw")
 async def confirm_withdrawal(request: Request) -> Response:
     """What withdrawing means, before it is done."""
-    participant = await participant_at(request, *Step)
-    if not participant.proven:
-        raise NotProven
-    if not may_withdraw(Step(participant.step), services(request).study.settings.study_open):
-        raise StudyClosed(CLOSED_TO_WITHDRAWAL)
+    participant = await participant_at(request, *Step, whose=request.query_params.get(WHOSE))
+    enrolment.require_way_out(services(request).study, participant)
     return page(request, "withdraw.html", participant=participant)
 
 
@@ -254,15 +250,6 @@ def _path(step: Step, same_invitation: bool = True) -> str:
     """Where a step's page is; its ending gives no code to another invitation."""
     hidden = step in ENDINGS and not same_invitation
     return f"{PATHS[step]}?{OTHER_INVITATION}" if hidden else PATHS[step]
-
-
-async def _may_see_code(request: Request, participant: Record) -> bool:
-    if participant.proven:
-        return True
-    recruit = await services(request).database.read(
-        lambda c: repository.recruit_of(c, participant.id)
-    )
-    return recruit is None or recruit.recruiter_session is None
 
 
 def _user_agent(request: Request) -> str:

@@ -1,5 +1,6 @@
 """Whose page speaks: other browsers, other people in one browser, other invitations."""
 
+import re
 import sqlite3
 from typing import Any
 
@@ -230,6 +231,13 @@ def test_a_form_of_the_page_before_changes_nothing_of_the_other_one(
     assert reply.status_code == 409
     assert "Somebody else has begun in this browser" in reply.text
     assert dump(settings) == before
+
+
+def test_the_way_out_of_the_page_before_leads_nobody_else_out(browser):
+    browser.reach_trials(ANN)
+    (way_out,) = re.findall(r'href="(/withdraw.*?)"', browser.get("/trial").text)
+    browser.reach_trials(BOB)
+    assert "Somebody else has begun in this browser" in browser.get(way_out).text
 
 
 def test_instructions_read_by_the_person_before_are_not_read_by_the_other(browser, rows):
