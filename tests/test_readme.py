@@ -29,6 +29,11 @@ NEEDS = {
         "goalguess simulate --participants 8",
         "goalguess export --to rehearsal --simulated",
     ],
+    "goalguess backup --to backup.sqlite": ["rm -f backup.sqlite"],
+    "goalguess restore backup.sqlite": [
+        "rm -f backup.sqlite",
+        "goalguess backup --to backup.sqlite",
+    ],
 }
 """What must have been run before a command that reads its files."""
 SMALLER = {
@@ -65,8 +70,8 @@ def recorded(folder, environment):
         "from tests.app.conftest import *\n"
         "settings = Settings(database_url='sqlite:///goalguess.sqlite', seed=1)\n"
         "with TestClient(create_app(settings), base_url=ORIGIN) as client:\n"
-        "    for _ in range(4):\n"
-        "        Browser(TestClient(client.app, base_url=ORIGIN)).take_part()\n"
+        "    for link in ('?PROLIFIC_PID=5f1e0c2a9b3d4e6f7a8b9c0d', '', '', ''):\n"
+        "        Browser(TestClient(client.app, base_url=ORIGIN)).take_part(link)\n"
     )
     subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, check=True)
 

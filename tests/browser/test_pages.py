@@ -92,7 +92,7 @@ def test_nothing_tells_condition_or_goal_before_the_guess(visit: Visit):
     assert [found for text in told if (found := re.search(SECRETS, text))] == []
     state = page.evaluate("fetch('/api/trial').then((reply) => reply.json())")
     assert set(state["trial"]) == {
-        *("index", "of", "phase", "position_ms", "stop_time_ms", "ticket", "playback")
+        *("index", "of", "phase", "position_ms", "stop_time_ms", "press_ms", "ticket", "playback")
     }
     assert set(state["trial"]["playback"]) == {
         *("rows", "cols", "walls", "areas", "path", "step_ms", "lead_in_ms")
