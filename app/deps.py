@@ -14,7 +14,7 @@ from starlette.types import Receive, Scope, Send
 from app import repository
 from app.arrival import stream_of
 from app.database import Database
-from app.errors import NoSession, TooMany, WrongStep
+from app.errors import DatabaseUnavailable, NoSession, TooMany, WrongStep
 from app.limits import Moderation
 from app.pages import Pages
 from app.recruiter_ids import PARAMETERS
@@ -152,8 +152,11 @@ def recruiter(
 def way_on(request: Request, error: Exception) -> str | None:
     """Where an error page can lead without making a second person of one; None: nowhere.
 
-    That is the invitation, if the request has it, or the participant's own page.
+    That is the invitation, if the request has it, or the participant's own page. While nothing can
+    be stored, loading the page again sends the form again; a button would lose it.
     """
+    if isinstance(error, DatabaseUnavailable):
+        return None
     values = _link_values(request)
     kept = {name: values[name] for name in (*PARAMETERS, *PILOTS) if values.get(name)}
     if kept:

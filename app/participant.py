@@ -77,7 +77,9 @@ async def arrive(request: Request) -> Response:
 @router.post("/go-on")
 async def go_on(request: Request) -> Response:
     """The button by which whoever opened their link in another browser goes on there."""
-    link, agent = Link.read(await _form(request)), _user_agent(request)
+    form = request.state.form = await _form(request)
+    link, agent = Link.read(form), _user_agent(request)
+    require_moderation(request)
     at, old_token = services(request), token_of(request)
     gone_on = await at.database.write(
         lambda c: arrival.go_on_here(c, at.study, link, old_token, agent)

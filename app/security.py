@@ -90,7 +90,8 @@ def _require_own_origin(headers: Headers) -> None:
     origin, host = headers.get("origin"), headers.get("host", "")
     vouched = headers.get("sec-fetch-site") == "same-origin"
     sender = None if origin is None else origin.partition("://")[2]
-    if vouched if sender is None else sender == host:
+    own = vouched if sender is None else sender == host
+    if own:
         return
     if sender and (vouched or _without_port(sender) == _without_port(host)):
         raise HostChanged

@@ -147,7 +147,7 @@ def test_a_recruited_participant_is_not_taken_for_a_preview_with_the_same_id(bro
     assert [row.stream for row in rows(participants)] == ["preview", "participant"]
 
 
-def test_a_moving_animation_goes_on_in_another_browser_as_far_as_it_can_have_been_seen(
+def test_a_moving_animation_goes_on_elsewhere_as_far_as_it_can_have_been_seen(
     browser, another_browser, client, rows
 ):
     browser.reach_trials(PROLIFIC)

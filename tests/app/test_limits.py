@@ -91,6 +91,18 @@ def test_one_consent_too_many_is_asked_to_wait_and_makes_nobody(settings):
     assert "wait 30 seconds" in replies[2].text
 
 
+def test_going_on_elsewhere_again_and_again_is_asked_to_wait_too(settings):
+    few = settings.model_copy(update={"consents_per_minute": 2})
+    link = "?PROLIFIC_PID=ann"
+    with TestClient(create_app(few), base_url=ORIGIN, client=("192.0.2.1", 1)) as client:
+        Browser(client).consent(link)
+        statuses = []
+        for _ in range(2):
+            client.cookies.clear()
+            statuses.append(Browser(client).go_on_here(link).status_code)
+    assert statuses == [303, 429]
+
+
 def test_the_limit_counts_the_addresses_that_a_proxy_passes_on(settings):
     few = settings.model_copy(update={"consents_per_minute": 1})
     with served(few) as url, Client(base_url=url, headers={"host": "study.test"}) as client:

@@ -5,9 +5,11 @@ import re
 import pytest
 from starlette.testclient import TestClient
 
-from app import arrival
+from app import arrival, enrolment
+from app.errors import DatabaseUnavailable
 from app.main import create_app
 from app.tables import participants
+from tests import messages
 from tests.app.conftest import ORIGIN, Browser
 
 LINK = "?PROLIFIC_PID=p1&STUDY_ID=s1&SESSION_ID=x1"
@@ -63,6 +65,18 @@ def test_a_crash_on_arrival_offers_the_same_link_again(settings, monkeypatch, qu
     monkeypatch.setattr(arrival, "find", crash)
     with TestClient(create_app(settings), base_url=ORIGIN, raise_server_exceptions=False) as client:
         assert way_on(Browser(client).get(f"/{query}")) == f"/{query}"
+
+
+def test_while_nothing_can_be_stored_no_button_loses_what_was_filled_in(browser, monkeypatch):
+    def unavailable(*_arguments):
+        raise DatabaseUnavailable("study.sqlite: its disk is full")
+
+    browser.consent(LINK)
+    monkeypatch.setattr(enrolment, "describe", unavailable)
+    reply = browser.post("/about-you", messages.ABOUT_ME)
+    assert (reply.status_code, way_on(reply)) == (503, None)
+    assert "load this page again" in reply.text
+    assert "disk" not in reply.text
 
 
 @pytest.mark.parametrize("reach", ["consent", "reach_trials", "take_part"])
