@@ -51,7 +51,7 @@ def test_declining(site: Site, visit: Visit):
     page.goto("/")
     press(page, "No, thank you")
     heading(page, "You are not taking part")
-    assert tab_to(page, "Return to the recruiting site").seen
+    assert tab_to(page, "Return my submission").seen
     assert site.rows("select count from tallies") == [{"count": 1}]
 
 
