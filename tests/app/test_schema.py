@@ -25,6 +25,7 @@ ROWS_OF_THE_FIRST_VERSION = """
                 '2025-03-01 09:10:20.000000', 'A'),
             (1, 2, 'two', 'study', '0.1.0', 1000, 18000, 1500, '2025-03-01 09:11:00.000000', 0,
                 NULL, NULL);
+    INSERT INTO sessions VALUES ('token', 1, 1, '2025-03-01 09:05:00.000000');
 """
 
 
@@ -64,7 +65,9 @@ def test_a_database_of_the_first_version_is_upgraded_and_keeps_its_rows(tmp_path
     prepare_file(file)
     with sqlite3.connect(file) as connection:
         after = connection.execute("SELECT * FROM trials").fetchall()
+        proven = connection.execute("SELECT proven FROM sessions").fetchall()
     assert len(before) == 2
+    assert proven == [(1,)]  # whoever is under way may still withdraw
     kept = len(before[0])
     assert [row[:kept] for row in after] == before
     assert {value for row in after for value in row[kept:]} == {None}  # not known
