@@ -6,7 +6,7 @@ refused, it would be sent again for ever, and its participant would be stuck.
 """
 
 import json
-from math import isnan
+from math import inf, isnan, nan
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
@@ -35,12 +35,22 @@ def _within(low: float, high: float) -> BeforeValidator:
         if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
             return value
         # What JavaScript has no number for arrives as null.
-        there = low if value is None or isnan(value) else min(max(value, low), high)
-        if value is None or there != value:
-            _note(info, str(info.field_name), str(value))
+        number = nan if value is None else _as_float(value)
+        there = low if isnan(number) else min(max(number, low), high)
+        if there == number:
+            return value
+        _note(info, str(info.field_name), str(None if value is None else number))
         return there
 
     return BeforeValidator(clamp)
+
+
+def _as_float(number: int | float) -> float:
+    """The number, infinite where it has more digits than any float."""
+    try:
+        return float(number)
+    except OverflowError:
+        return inf if number > 0 else -inf
 
 
 def _whole(value: object) -> object:

@@ -69,7 +69,7 @@ def test_a_time_that_cannot_be_flags_its_trial_and_is_logged_as_it_came(moving, 
     browser.stop(1, 3000, paused_ms=-5)
     assert (stored(rows).paused_ms, stored(rows).times_clamped) == (0, True)
     (note,) = [row for row in rows(events) if row.type == "mended"]
-    assert (note.trial_index, note.details) == (1, {"paused_ms": "-5"})
+    assert (note.trial_index, note.details) == (1, {"paused_ms": "-5.0"})
 
 
 def test_a_later_message_that_is_right_takes_no_flag_away(moving, rows):

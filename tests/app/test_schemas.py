@@ -21,7 +21,7 @@ from app.schemas import (
 from tests import messages
 
 DAY_MS = 24 * 3600 * 1000
-ANY_NUMBER = st.floats() | st.integers() | st.none()
+ANY_NUMBER = st.floats() | st.integers() | st.integers(-(10**400), 10**400) | st.none()
 
 
 def read(model, body):
@@ -39,11 +39,22 @@ def test_twelve_days_away_are_twelve_days():
 
 
 @pytest.mark.parametrize(
-    ("came", "kept"), [(1e15, MOST_MS), (-3, 0), (nan, 0), (inf, MOST_MS), (-inf, 0), (None, 0)]
+    ("came", "kept", "noted"),
+    [
+        (1e18, MOST_MS, "1e+18"),
+        (-3, 0, "-3.0"),
+        (nan, 0, "nan"),
+        (inf, MOST_MS, "inf"),
+        (-inf, 0, "-inf"),
+        (None, 0, "None"),
+        (10**400, MOST_MS, "inf"),
+        (-(10**400), 0, "-inf"),
+    ],
+    ids=lambda value: str(value)[:8],
 )
-def test_a_time_that_cannot_be_is_taken_for_the_nearest_that_can(came, kept):
+def test_a_time_that_cannot_be_is_taken_for_the_nearest_that_can(came, kept, noted):
     message = read(Stopped, {**messages.stopped(100), "paused_ms": came})
-    assert (message.paused_ms, message.mended) == (kept, {"paused_ms": str(came)})
+    assert (message.paused_ms, message.mended) == (kept, {"paused_ms": noted})
 
 
 @given(ANY_NUMBER, ANY_NUMBER, ANY_NUMBER)
