@@ -128,7 +128,7 @@ def played(
             played_waited_ms=message.waited_ms,
             position_ms=0.0,
             reduced_motion=message.device.reduced_motion,
-            times_clamped=bool(message.mended),
+            times_clamped=message.clamped,
         )
 
     return _once(connection, study, token, index, message, Phase.READY, begin)
@@ -152,7 +152,7 @@ def stopped(
             reached_end=stop_ms == at.length_ms,
             press_ms=message.stop_time_ms,
             times_clamped=bool(
-                participant.times_clamped or message.mended or stop_ms != message.stop_time_ms
+                participant.times_clamped or message.clamped or stop_ms != message.stop_time_ms
             ),
             **facts,
         )
@@ -170,7 +170,7 @@ def answered(
         if message.guess not in letters:
             raise InvalidInput(f"guess: expected one of {letters}, came {message.guess!r}")
         facts = message.model_dump(exclude=ENVELOPE | {"stop_time_ms"})
-        if message.mended:
+        if message.clamped:
             facts["times_clamped"] = True
         repository.change_trial(
             connection, participant.id, index, answered_at=repository.now(), **facts

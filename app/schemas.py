@@ -145,6 +145,11 @@ class Message(_Strict):
         """What came in the place of each value that could not be, by its field."""
         return self._mended
 
+    @property
+    def clamped(self) -> bool:
+        """Whether a time was one that cannot be."""
+        return any(field.endswith("_ms") for field in self._mended)
+
 
 ENVELOPE = set(Message.model_fields)
 """What is said of a message itself, not of a trial."""

@@ -72,6 +72,14 @@ def test_a_time_that_cannot_be_flags_its_trial_and_is_logged_as_it_came(moving, 
     assert (note.trial_index, note.details) == (1, {"paused_ms": "-5.0"})
 
 
+def test_what_is_mended_beside_times_flags_no_time(moving, rows):
+    browser, _ = moving
+    browser.stop(1, 3000, pauses=-1, events=[{"type": "of-a-later-version"}])
+    assert stored(rows).times_clamped is False
+    (note,) = [row for row in rows(events) if row.type == "mended"]
+    assert note.details == {"pauses": "-1.0", "events_left_out": 1}
+
+
 def test_a_later_message_that_is_right_takes_no_flag_away(moving, rows):
     browser, _ = moving
     browser.stop(1, 3000, paused_ms=-5)
