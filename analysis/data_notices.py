@@ -10,8 +10,8 @@ from .dataset import Dataset
 from .statistics import codes
 from .statistics.inference import FEW
 
-NO_RESULT = ("synthetic_data", "simulated_included")
-"""Codes of notices that the numbers are no result, which go wherever the numbers go."""
+WITH_THE_NUMBERS = ("synthetic_data", "simulated_included", "impossible_time")
+"""Codes of notices that go wherever the numbers go: those are no result, or hold a program's."""
 
 _SYNTHETIC_SHA256 = "4c6b0d3b083d3bf298a6a4e1cb210b924cae5c2963fcca90e9a3deeb4ea47e94"
 """Of the table of 1,500 trials that was made up because the authors' data are not published."""

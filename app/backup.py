@@ -15,7 +15,7 @@ from app.copying import Progress, copy_database
 from app.database import Database
 from app.database_files import beside, dated, files_of, place_beside, sync_folder
 from app.enrolment import withdraw_again
-from app.errors import DatabaseUnavailable, InvalidInput
+from app.errors import AppError, DatabaseUnavailable, InvalidInput
 from app.opening import expect_pool, holdings
 from app.schema import expect_ours, prepare
 from app.sqlite import sqlite_engine, url_of
@@ -27,11 +27,15 @@ SHARED_LOCK = 0x4000_0002, 510
 
 @dataclass(frozen=True)
 class Restored:
-    """What a restored database holds, how many it dropped, where what it replaced was kept."""
+    """What a restored database holds, how many it dropped, where what it replaced was kept.
+
+    `replaced_holds` is None where that cannot be read.
+    """
 
     holds: str
     dropped: int
     replaced: Path | None
+    replaced_holds: str | None
 
 
 def back_up(file: Path, to: Path, progress: Progress) -> str:
@@ -41,8 +45,7 @@ def back_up(file: Path, to: Path, progress: Progress) -> str:
     with place_beside(to) as copy:
         copy_database(file, copy, progress)
         expect_ours(copy, str(file))
-        with sqlite_engine(url_of(copy), "BEGIN").connect() as connection, connection.begin():
-            holds = holdings(connection)
+        holds = _holdings_of(copy)
         copy.rename(to)
         sync_folder(to.parent)
     return holds
@@ -59,11 +62,11 @@ def restore(study: Study, backup: Path, progress: Progress) -> Restored:
         file = file.resolve()
     if file.exists() and backup.exists() and file.samefile(backup):
         raise InvalidInput(f"{backup}: expected a backup, found the study's database itself")
+    # Before it is locked: SQLite, closing a file, would end this process's lock on it.
+    replaced_holds = _holdings_now(file)
     with _nobody_else_in(file), place_beside(file) as copy:
         dropped = _copy_without_withdrawn(study, backup, copy, progress)
-        with sqlite_engine(url_of(copy), "BEGIN").connect() as connection, connection.begin():
-            holds = holdings(connection)
-        return Restored(holds, dropped, _exchange(file, copy))
+        return Restored(_holdings_of(copy), dropped, _exchange(file, copy), replaced_holds)
 
 
 @contextmanager
@@ -76,6 +79,23 @@ def snapshot(study: Study, progress: Progress | None = None) -> Iterator[Databas
         with closing(Database(url_of(copy))) as database:
             database.read_now(lambda connection: expect_pool(connection, study))
             yield database
+
+
+def _holdings_of(copy: Path) -> str:
+    with sqlite_engine(url_of(copy), "BEGIN").connect() as connection, connection.begin():
+        return holdings(connection)
+
+
+def _holdings_now(file: Path) -> str | None:
+    """What a database that may be damaged, or none of ours, holds; None if it cannot be read."""
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / file.name
+        try:
+            copy_database(file, copy)
+            expect_ours(copy, str(file))
+            return _holdings_of(copy)
+        except (AppError, OSError):
+            return None
 
 
 def _copy_without_withdrawn(study: Study, file: Path, copy: Path, progress: Progress | None) -> int:

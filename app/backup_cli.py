@@ -26,11 +26,12 @@ def backup(
     with _progress("Copying") as progress:
         holds = back_up(settings.database_file, to, progress)
     typer.echo(f"{to}: {holds}, whole and checked.")
-    typer.echo(
-        f"Not in it is the list of who withdrew: keep {settings.withdrawals_file} too, by which "
-        "restore leaves them out.",
-        err=True,
-    )
+    if settings.withdrawals_file.exists():
+        typer.echo(
+            f"Not in it is the list of who withdrew: keep {settings.withdrawals_file} too, by "
+            "which restore leaves them out.",
+            err=True,
+        )
 
 
 @commands.command()
@@ -56,12 +57,13 @@ def restore(
     listed = settings.withdrawals_file
     if listed.exists():
         typer.echo(f"Left out by {listed}, as they have withdrawn since: {restored.dropped}.")
-    else:
-        typer.echo(f"No list of who withdrew ({listed}): nobody is left out.", err=True)
+    _warn_of_no_list(listed)
     if restored.replaced:
+        held = restored.replaced_holds or "nothing that can be read"
         typer.echo(
-            f"What was there is now {restored.replaced}. It holds personal data: delete it, and "
-            "the files beside it that begin so, when you need it no more."
+            f"What was there is now {restored.replaced}: {held}. Whoever came after the backup is "
+            "in it alone, also if they are to be paid. It holds personal data: delete it, and the "
+            "files beside it that begin so, when you need it no more."
         )
 
 
@@ -89,10 +91,22 @@ def export(
         snapshot(study, progress) as database,
     ):
         done = write_export(database, study, to, simulated)
+    _warn_of_no_list(settings.withdrawals_file)
     rows = ", ".join(f"{count} {name}" for name, count in done.rows.items())
     typer.echo(f"{to}: {rows}; codebook.md says what each column means.")
     if done.pilots_left_out:
-        typer.echo(f"{done.pilots_left_out} pilots left out; --simulated includes them.")
+        pilots = "1 pilot" if done.pilots_left_out == 1 else f"{done.pilots_left_out} pilots"
+        typer.echo(f"{pilots} left out; --simulated includes them.")
+
+
+def _warn_of_no_list(listed: Path) -> None:
+    """Say that a copy may hold people who have withdrawn since it was made."""
+    if not listed.exists():
+        typer.echo(
+            f"No list of who withdrew ({listed}), so nobody is left out; GOALGUESS_WITHDRAWALS "
+            "names another one.",
+            err=True,
+        )
 
 
 def _warn(file: Path, named_by: str = "") -> None:

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple, TypeVar
 from sqlalchemy import URL, Connection
 
 from app.copying import write_copy
-from app.database_files import FilesInUse, dated, identity, make_private
+from app.database_files import RESCUED, FilesInUse, dated, identity, make_private
 from app.errors import AppError, DatabaseUnavailable
 from app.sqlite import file_of, in_turn, refusal_of, refusals, run_pragma, sqlite_engine
 
@@ -166,13 +166,14 @@ class Database:
         trouble = None if self._lost else self._in_use.trouble()
         if trouble is None:
             return
-        self._lost = f"{trouble} while the study ran: nothing is stored or read until it restarts"
-        log.critical("%s. %s", self._lost, self._rescue())
+        found = f"{trouble} while the study ran: nothing is stored or read any more"
+        self._lost = f"{found}. {self._rescue()}"
+        log.critical("%s", self._lost)
         raise DatabaseUnavailable(self._lost)
 
     def _rescue(self) -> str:
         """Copy what is in the lost files, which we still have open; says what to do with it."""
-        copy = dated(self._file.absolute(), "rescued")
+        copy = dated(self._file.absolute(), RESCUED)
         try:
             write_copy(_driver(self._writer), copy)
         except (AppError, OSError, sqlite3.Error) as error:

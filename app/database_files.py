@@ -15,6 +15,8 @@ from typing import TextIO
 from app.errors import DatabaseMismatch, DatabaseUnavailable
 
 LOG, INDEX, JOURNAL = "-wal", "-shm", "-journal"
+RESCUED = "rescued"
+"""In the name of a copy of what was in a database that was lost under a server."""
 _Identity = tuple[int, int] | None
 
 
@@ -41,7 +43,7 @@ def expect_database(file: Path, named_by: str = "") -> None:
 def expect_folder(file: Path) -> None:
     """DatabaseMismatch if the folder in which a file is to be made does not exist."""
     if not file.parent.is_dir():
-        raise DatabaseMismatch(f"{file}: expected a SQLite database in a folder that exists")
+        raise DatabaseMismatch(f"{file}: expected a file in a folder that exists")
 
 
 def make_private(file: Path) -> None:

@@ -180,7 +180,7 @@ class DatabaseUnavailable(AppError):
     retry_after_s = 5
     shown = (
         "The study cannot store anything just now. Please load this page again in a moment: "
-        "what you did is kept, and sent again."
+        "nothing stored is lost, and what you had filled in is sent again."
     )
 
 

@@ -7,7 +7,7 @@ from sqlalchemy import Connection
 
 from app import books, enrolment
 from app.database import Database
-from app.database_files import LOG, append_privately, beside, files_of, open_to_others
+from app.database_files import LOG, RESCUED, append_privately, beside, files_of, open_to_others
 from app.errors import DatabaseMismatch, DatabaseUnavailable
 from app.schema import prepare
 from app.sqlite import damage
@@ -18,6 +18,7 @@ def open_database(study: Study) -> Database:
     """The database of a study's settings, up to date; DatabaseMismatch if it is not ours."""
     settings = study.settings
     file = settings.database_file
+    _expect_no_remains(file)
     _expect_sound(file)
     prepare(settings.database_url, str(file))
     database = Database(settings.database_url)
@@ -72,6 +73,24 @@ def expect_pool(connection: Connection, study: Study) -> None:
 
 def _number(count: int, what: str) -> str:
     return f"{count:,} {what}" + ("" if count == 1 else "s")
+
+
+def _expect_no_remains(file: Path) -> None:
+    """DatabaseUnavailable rather than a new database in the place of one that was lost."""
+    if file.exists() and file.stat().st_size:
+        return
+    rescued = sorted(file.parent.glob(f"{file.name}.{RESCUED}-*"))
+    if rescued:
+        raise DatabaseUnavailable(
+            f"{file}: it is gone, but what was in it is in {rescued[-1]}; goalguess restore "
+            f"{rescued[-1]} puts it back, or move that away to begin anew"
+        )
+    log = beside(file, LOG)
+    if log.exists() and log.stat().st_size:
+        raise DatabaseUnavailable(
+            f"{file}: it is gone, but its log {log} is there; put the file back, or move the log "
+            "away to begin anew"
+        )
 
 
 def _expect_sound(file: Path) -> None:

@@ -7,7 +7,6 @@ import logging
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
 
 from app.errors import BadLink
 
@@ -46,6 +45,8 @@ _PERSONS = frozenset(
     }
 )
 """What recruiters and programs call the person's id, as `_plain` writes it."""
+
+_warned_of: set[str] = set()
 
 _NAME = re.compile(r"[A-Za-z_-]{1,20}")
 
@@ -101,15 +102,13 @@ def lacking_id(named: str | None) -> BadLink:
 
 def warn_of(named: str) -> None:
     """Log, once for each name, that links carry the person's id under another one."""
-    _warn_once(_plain(named))
-
-
-@lru_cache
-def _warn_once(name: str) -> None:
+    if _plain(named) in _warned_of:
+        return
+    _warned_of.add(_plain(named))
     log.warning(
         "Invitation links have a parameter %s where %s is expected: whoever comes by them has no "
         "recruiter's id, so nobody can tell whom to pay.",
-        name,
+        named,
         PERSON,
     )
 

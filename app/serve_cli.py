@@ -48,10 +48,13 @@ def serve(
         shown = f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{listener.getsockname()[1]}{settings.root_path}/"
         typer.echo(f"The study is at {address}")
-        typer.echo(f"To try it without leaving data: {address}?preview=1")
+        if settings.study_open:
+            typer.echo(f"To try it, left out of the data: {address}?preview=1")
+        else:
+            typer.echo("It is closed: nobody new can begin (GOALGUESS_STUDY_OPEN).")
         for gap in settings.gaps:
             typer.echo(f"Not set: {gap}", err=True)
-        for warning in filter(None, (*start_warnings(study), without_id)):
+        for warning in filter(None, (*settings.doubts, *start_warnings(study), without_id)):
             typer.echo(warning, err=True)
         uvicorn.Server(StudyConfig(app, settings)).run(sockets=[listener])
 

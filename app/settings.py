@@ -155,6 +155,20 @@ class Settings(BaseSettings):
         return [f"{PREFIX}{name} ({lack})" for name, (value, lack) in needed.items() if not value]
 
     @property
+    def doubts(self) -> list[str]:
+        """What is set so that recruiters may pay or lead people wrongly, a line each."""
+        found = []
+        for ending, code in self.codes.items():
+            if code and ending != "completed" and code == self.codes.get("completed"):
+                found.append(
+                    f"{PREFIX}CODES, {ending}: the same code as completed, so the recruiter cannot "
+                    "tell these people from those to be paid"
+                )
+        if any(self.codes.values()) and self.return_url and "{code}" not in self.return_url:
+            found.append(f"{PREFIX}RETURN_URL: holds no {{code}}, so the way back brings none")
+        return found
+
+    @property
     def withdrawals_file(self) -> Path:
         """The list of withdrawn participants, kept outside the database."""
         file = self.database_file

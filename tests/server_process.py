@@ -14,7 +14,7 @@ from app.settings import Ending
 COMPLETE = {
     "researchers": "The Goalguess team",
     "contact": "study@example.org",
-    "codes": json.dumps(dict.fromkeys(get_args(Ending), "DONE1")),
+    "codes": json.dumps({ending: f"{ending.upper()}1" for ending in get_args(Ending)}),
 }
 """Without these, the server says at each start what is not set."""
 

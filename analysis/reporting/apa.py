@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..arms import Arms
 from ..conclusions import Conclusion
-from ..data_notices import NO_RESULT
+from ..data_notices import WITH_THE_NUMBERS
 from ..evidence import Evidence
 from ..plan import Plan
 from ..results import Results
@@ -16,12 +16,12 @@ from .effects import bracketed, statement
 def apa_sentences(results: Results) -> tuple[str, ...]:
     """Return a sentence a result: primary tests, models, stops, then the paper's tests.
 
-    Before them stands what makes the numbers no result, such as simulated trials.
+    Before them stands what casts doubt on all numbers, such as simulated trials.
     """
     evidence, plan = results.evidence, results.data.plan
     paper = evidence.paper
     return (
-        *(notice.text for notice in results.notices if notice.code in NO_RESULT),
+        *(notice.text for notice in results.notices if notice.code in WITH_THE_NUMBERS),
         *(_primary(each, evidence, plan) for each in evidence.conclusions),
         *(
             f"Mixed model of {WORDS[each.measure].name}, participants and scenarios crossed: "

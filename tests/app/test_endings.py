@@ -75,3 +75,12 @@ def test_the_start_names_every_ending_without_a_code():
         "withdrawn",
     ]
     assert Settings(researchers="Ada", contact="ada@example.org", codes=CODES).gaps == []
+
+
+def test_the_start_doubts_codes_that_pay_for_another_ending_and_a_way_back_without_any():
+    shared = Settings(codes={"completed": "C1", "no_consent": "C1", "failed": "C2"})
+    (doubt,) = shared.doubts
+    assert doubt.startswith("GOALGUESS_CODES, no_consent: the same code as completed")
+    (doubt,) = Settings(codes=CODES, return_url="https://example.org/").doubts
+    assert doubt.startswith("GOALGUESS_RETURN_URL: holds no {code}")
+    assert Settings(codes=CODES).doubts == Settings(return_url="").doubts == []

@@ -25,7 +25,7 @@ from tests.app.test_unavailable import run
 def killed(database, study, settings, tmp_path):
     """The files of a server that was killed: two answers, all of them in the log."""
     take_part(database, study, answers=2)
-    return as_killed(settings.database_file, tmp_path / "killed")
+    return with_list(as_killed(settings.database_file, tmp_path / "killed"))
 
 
 @pytest.fixture
@@ -35,7 +35,20 @@ def closed(study, settings):
         take_part(database, study, answers=2)
     folder = settings.database_file.parent / "closed"
     folder.mkdir()
-    return Path(shutil.copy(settings.database_file, folder))
+    return with_list(Path(shutil.copy(settings.database_file, folder)))
+
+
+def with_list(file):
+    """A database with its list of withdrawals, on which nobody is."""
+    file.with_name(f"{file.name}.withdrawn").touch()
+    return file
+
+
+def test_a_copy_without_the_list_of_withdrawals_is_said_to_leave_nobody_out(closed, tmp_path):
+    closed.with_name(f"{closed.name}.withdrawn").unlink()
+    done = run(closed, "export", "--to", str(tmp_path / "out"))
+    assert done.stderr.startswith(f"No list of who withdrew ({closed}.withdrawn)")
+    assert done.returncode == 0
 
 
 def without_index(file):
@@ -62,7 +75,10 @@ def test_a_closed_database_is_exported_without_a_word_and_without_a_trace(closed
     assert (done.returncode, done.stderr) == (0, "")
     assert "2 trials" in done.stdout
     assert contents(closed.parent) == before
-    assert {file.name for file in closed.parent.iterdir()} == {closed.name}
+    assert {file.name for file in closed.parent.iterdir()} == {
+        closed.name,
+        f"{closed.name}.withdrawn",
+    }
 
 
 def test_a_copy_of_a_database_in_use_without_its_log_is_said_to_lack_answers(killed, tmp_path):
@@ -117,7 +133,10 @@ def test_a_study_that_never_ran_is_not_registered(closed):
     with snapshot(load_study(settings), unseen):
         pass
     assert contents(closed.parent) == before
-    assert {file.name for file in closed.parent.iterdir()} == {closed.name}
+    assert {file.name for file in closed.parent.iterdir()} == {
+        closed.name,
+        f"{closed.name}.withdrawn",
+    }
 
 
 def test_a_database_of_the_first_version_is_read_and_stays_as_it_is(tmp_path, monkeypatch):

@@ -22,7 +22,7 @@ def demanding(settings):
 @pytest.fixture
 def warnings(caplog):
     """What was logged, beginning with nothing noticed yet."""
-    recruiter_ids._warn_once.cache_clear()
+    recruiter_ids._warned_of.clear()
     caplog.set_level(logging.WARNING, logger="goalguess")
     return caplog
 
@@ -96,7 +96,7 @@ def test_an_id_under_another_name_is_logged_once_and_taken_for_none(
     for visitor in (browser, another_browser()):
         assert visitor.consent("?prolific_pid=p1").headers["location"] == "/about-you"
     (warning,) = warnings.messages
-    assert "prolificpid where PROLIFIC_PID is expected" in warning
+    assert "prolific_pid where PROLIFIC_PID is expected" in warning
     assert "p1" not in warning
     assert rows(recruits) == []
 

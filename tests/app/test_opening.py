@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import update
 
 from app.books import drawn_from
-from app.errors import DatabaseMismatch
+from app.errors import DatabaseMismatch, DatabaseUnavailable
 from app.opening import open_database
 from app.settings import Settings
 from app.study import load_study
@@ -51,3 +51,19 @@ def test_a_database_dealt_from_another_pool_is_refused(study):
     database.close()
     with pytest.raises(DatabaseMismatch, match="found ffffffffffff"):
         open_database(study)
+
+
+def test_no_new_study_is_begun_in_the_place_of_one_that_was_lost(settings, study):
+    file = settings.database_file
+    rescued = file.with_name(f"{file.name}.rescued-20260301T093000Z")
+    file.rename(rescued)
+    with pytest.raises(DatabaseUnavailable, match=f"goalguess restore {rescued}"):
+        open_database(study)
+    rescued.rename(file.with_name("elsewhere"))
+    log = file.with_name(f"{file.name}-wal")
+    log.write_bytes(b"answers")
+    with pytest.raises(DatabaseUnavailable, match=r"its log .*-wal is there"):
+        open_database(study)
+    assert (log.read_bytes(), file.exists()) == (b"answers", False)
+    log.unlink()
+    open_database(study).close()

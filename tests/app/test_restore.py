@@ -1,5 +1,6 @@
 """`goalguess restore`: a backup in the place of the database, or nothing changed at all."""
 
+import re
 import shutil
 import sqlite3
 from contextlib import closing
@@ -167,7 +168,8 @@ def test_the_command_says_what_is_there_now_and_where_the_rest_went(file, backup
     assert done.returncode == 0
     assert f"{file}: 1 participant and 3 answers, as in {backup}." in done.stdout
     assert f"Left out by {file}.withdrawn, as they have withdrawn since: 1." in done.stdout
-    assert "study.sqlite.replaced-" in done.stdout
+    assert re.search(r"study\.sqlite\.replaced-\w+: \d+ participants? and \d+ answers", done.stdout)
+    assert "Whoever came after the backup is in it alone" in done.stdout
     assert "personal data" in done.stdout
 
 

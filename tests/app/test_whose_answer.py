@@ -13,8 +13,8 @@ from tests import messages
 ANN = "?PROLIFIC_PID=ann&STUDY_ID=s1&SESSION_ID=x1"
 ANN_AGAIN = "?PROLIFIC_PID=ann&STUDY_ID=s1&SESSION_ID=x2"
 BOB = "?PROLIFIC_PID=bob&STUDY_ID=s1&SESSION_ID=x3"
-GOES_ON = "You began in another browser"
-HAS_ENDED = "You have taken part in another browser"
+GOES_ON = "Go on in this browser?"
+HAS_ENDED = "You have taken part already"
 
 STEPS = {
     "consent": lambda browser: browser.consent(ANN),

@@ -66,7 +66,7 @@ def test_whoever_went_on_in_another_browser_is_told_here(site: Site, visit: Visi
     walk.play(here, 3 * STEP_MS)
     elsewhere = visit()
     elsewhere.goto(link)
-    expect(elsewhere.get_by_role("heading", level=1)).to_have_text("You began in another browser")
+    expect(elsewhere.get_by_role("heading", level=1)).to_have_text("Go on in this browser?")
     walk.phase(here, "moving")  # nobody has gone on anywhere yet
     elsewhere.get_by_role("button", name="Go on here").click()
     walk.phase(elsewhere, "paused")

@@ -235,6 +235,13 @@ def test_simulated_trials_in_the_numbers_are_the_first_thing_to_note(tmp_path):
     assert apa_sentences(analyse_path(path))[0].startswith("Correct guesses:")
 
 
+def test_times_that_cannot_be_are_told_before_the_sentences_for_a_manuscript(tmp_path):
+    rows = six_participants()
+    rows[0]["impossible_time"] = True
+    results = analyse_path(write_table(TRIALS, rows, tmp_path)[0])
+    assert apa_sentences(results)[0].startswith("Times that cannot be: 1 of the participants")
+
+
 def test_the_synthetic_trials_are_said_to_be_no_result_before_all_else_to_note(paper):
     noted = markdown(report_parts(paper)).partition("## Please note\n\n")[2]
     said = "Not a result: synthetic data, made to print the paper's numbers."
