@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, diags_array
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu
 
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import Array
@@ -81,5 +81,11 @@ def _steps_round(
     row, a = np.nonzero(moves & inside)
     within = coo_array((policy[row, a], (row, place[row, a])), (len(x), len(x)))
     moving = np.where(moves, policy, 0).sum(axis=1)
-    expected: Array = spsolve((diags_array(moving) - within).tocsc(), 1 / (1 - FAILURE) + onwards)
-    return expected
+    # Ways out may have chances too small beside the others for numbers to hold them: then the
+    # system is singular, or its solution less than a single step, and nothing is proved.
+    try:
+        leaving = splu((diags_array(moving) - within).tocsc())
+    except RuntimeError:
+        return np.full(len(x), np.inf)
+    expected: Array = leaving.solve(1 / (1 - FAILURE) + onwards)
+    return expected if (expected >= 1).all() else np.full(len(x), np.inf)
