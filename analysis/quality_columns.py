@@ -38,6 +38,15 @@ OF_TRIALS = (
     ),
     _lasted("frame_interval_s", meaning=f"Usual time from one frame to the next. {_OLDER}"),
     _lasted(
+        "played_waited_s",
+        meaning="How long the page's message that the motion had begun waited in the page, or took "
+        f"until the server had it. {_OLDER}",
+    ),
+    _lasted(
+        "stopped_waited_s",
+        meaning=f"How long the page kept its message of the stop before it could send it. {_OLDER}",
+    ),
+    _lasted(
         "server_stretch_s",
         meaning="The longest motion that the server's clock can confirm: until it learned of the "
         "stop, from when the page says that the motion began, but never from before the animation "
@@ -52,13 +61,15 @@ OF_TRIALS = (
     _sign(
         "times_clamped",
         meaning="Whether the page sent a time that could not be, which is stored as the nearest "
-        f"one that could. {_OLDER}",
+        "one that could; also a press later than one frame_interval_s after the last frame drawn. "
+        f"{_OLDER}",
     ),
     _added(
         "watched_elsewhere",
         Kind.BOOLEAN,
-        "Whether another browser of the participant had begun to play the animation and could not "
-        "say so in time: parts may have been seen before.",
+        "Whether another browser of the participant played the animation, too: it went on in this "
+        "one from where it can have been seen, or began anew because the other could not say so in "
+        "time. What was seen is then less sure.",
     ),
 )
 

@@ -141,7 +141,13 @@ def stopped(
 
     def keep_stop(participant: Record, at: Standing) -> None:
         stop_ms = stop_time_ms(message, at.length_ms)
-        facts = message.model_dump(exclude=ENVELOPE | {"stop_time_ms", "reached_end"})
+        facts = message.model_dump(
+            exclude=ENVELOPE | {"stop_time_ms", "reached_end", "played_took_ms"}
+        )
+        if message.played_took_ms is not None:
+            # It may have waited on its way, or for our database: the page knows that only now.
+            waited_ms = max(participant.played_waited_ms or 0, message.played_took_ms)
+            facts["played_waited_ms"] = waited_ms
         repository.change_trial(
             connection,
             participant.id,
@@ -212,12 +218,13 @@ def played_elsewhere(
 ) -> None:
     """Note that a browser which the participant has left had begun a trial, and says so late.
 
-    It may have shown the animation before the newer browser did, for which it began anew.
+    It may have shown the animation before the newer browser did, for which it began anew. Not so
+    where the message had come, but not its reply: then it is logged under its key already.
     """
     participant = repository.participant_in_session(connection, hashed(token))
     if participant is not None and message.participant in (None, participant.pseudonym):
         details = {"waited_ms": message.waited_ms}
-        note(connection, study, participant, PLAYED_ELSEWHERE, details, index)
+        note(connection, study, participant, PLAYED_ELSEWHERE, details, index, message.key)
 
 
 def require_trial(study: Study, index: int) -> None:

@@ -14,7 +14,16 @@ from sqlalchemy import Connection
 
 from app import VERSION, books, repository
 from app.errors import CLOSED_TO_ARRIVALS, InvalidInput, StudyClosed
-from app.recruiter_ids import PARAMETERS, lacking_id, misnamed, read_id, require_shape
+from app.event_log import CAME_BACK
+from app.recruiter_ids import (
+    PARAMETERS,
+    is_unfilled,
+    lacking_id,
+    misnamed,
+    not_filled_in,
+    read_id,
+    require_shape,
+)
 from app.repository import Record
 from app.sessions import begin_session, hashed
 from app.steps import ENDINGS, Step
@@ -30,7 +39,8 @@ _ARRIVAL = re.compile(r"[A-Za-z0-9_-]{16,64}")
 class Link:
     """What an invitation link says: the recruiter's ids, and whether this is a pilot.
 
-    `misnamed` is a parameter that looks like the id under a name that is not ours.
+    `misnamed` is a parameter that looks like the id under a name that is not ours, `unfilled` one
+    of the others that holds a placeholder.
     """
 
     recruiter_id: str | None = None
@@ -38,12 +48,19 @@ class Link:
     recruiter_session: str | None = None
     stream: str = PARTICIPANT
     misnamed: str | None = None
+    unfilled: str | None = None
 
     @classmethod
     def read(cls, values: Mapping[str, str]) -> "Link":
         """Read a link's query or the consent form's hidden fields; BadLink if not filled in."""
-        ids = [read_id(name, values) for name in PARAMETERS]
-        return cls(ids[0], ids[1], ids[2], stream_of(values), misnamed(values))
+        person, *others = PARAMETERS
+        unfilled = next((name for name in others if is_unfilled(name, values)), None)
+        study, session = (
+            None if is_unfilled(name, values) else read_id(name, values) for name in others
+        )
+        return cls(
+            read_id(person, values), study, session, stream_of(values), misnamed(values), unfilled
+        )
 
     @property
     def ids(self) -> dict[str, str]:
@@ -57,6 +74,8 @@ class Link:
 
     def require_of_newcomer(self, id_required: bool) -> None:
         """BadLink unless somebody who is not known yet can come by this link."""
+        if self.unfilled:
+            raise not_filled_in(self.unfilled)
         for name, value in self.ids.items():
             require_shape(name, value)
         if id_required and self.recruiter_id is None and self.stream == PARTICIPANT:
@@ -96,29 +115,28 @@ def find(connection: Connection, link: Link, token: str | None) -> Known | None:
     known = repository.participant_recruited(connection, link.stream, link.recruiter_id)
     if known is None:
         return None
-    return Known(
-        known,
-        elsewhere=here is None or here.id != known.id,
-        same_invitation=_same_invitation(repository.recruit_of(connection, known.id), link),
-    )
+    same = _same_invitation(repository.recruit_of(connection, known.id), link)
+    is_here = here is not None and here.id == known.id
+    # A browser that came by another invitation proves itself by the very one.
+    unproven = here is not None and not here.proven and _proves(same, link)
+    return Known(known, elsewhere=not is_here or unproven, same_invitation=same)
 
 
 def go_on_here(
     connection: Connection, study: Study, link: Link, token: str | None, user_agent: str
-) -> tuple[Step, str | None] | None:
+) -> tuple[Known, str | None] | None:
     """Let somebody who is known by their link go on in this browser.
 
-    Returns their step and their new session's token, none where this browser had one already;
+    Returns who it is and their new session's token, none where this browser had one already;
     None for whoever is not known (any more).
     """
     known = find(connection, link, token)
     if known is None:
         return None
-    step = Step(known.participant.step)
     if not known.elsewhere:
-        return step, None
-    proven = known.same_invitation and link.recruiter_session is not None
-    return step, _move(connection, study, known.participant, user_agent, proven)
+        return known, None
+    proven = _proves(known.same_invitation, link)
+    return known, _move(connection, study, known.participant, user_agent, proven)
 
 
 def _move(
@@ -129,7 +147,7 @@ def _move(
     An animation that was moving in the other browser counts as seen for as long as it can have
     been: it goes on from there, and cannot be watched again from its start.
     """
-    token = begin_session(connection, study, participant, "came_back", user_agent, proven)
+    token = begin_session(connection, study, participant, CAME_BACK, user_agent, proven)
     trial = repository.last_trial(connection, participant.id)
     if trial is not None and trial.stopped_at is None:
         since_ms = (repository.now() - trial.played_at) / timedelta(milliseconds=1)
@@ -140,6 +158,11 @@ def _move(
             position_ms=max(trial.position_ms, min(since_ms, trial.length_ms)),
         )
     return token
+
+
+def _proves(same_invitation: bool, link: Link) -> bool:
+    """Whether an invitation shows that a browser is the participant's: not by the id alone."""
+    return same_invitation and link.recruiter_session is not None
 
 
 def _same_invitation(recruit: Record | None, link: Link) -> bool:

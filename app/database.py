@@ -19,17 +19,19 @@ from queue import Empty, SimpleQueue
 from threading import Lock, Thread
 from typing import Any, NamedTuple, TypeVar
 
-from sqlalchemy import URL, Connection
+from sqlalchemy import URL, Connection, Engine
 
 from app.copying import write_copy
-from app.database_files import RESCUED, FilesInUse, dated, identity, make_private
+from app.database_files import LOG, RESCUED, FilesInUse, beside, dated, identity, make_private
 from app.errors import AppError, DatabaseUnavailable
-from app.sqlite import file_of, in_turn, refusal_of, refusals, run_pragma, sqlite_engine
+from app.sqlite import damage, file_of, in_turn, refusal_of, refusals, run_pragma, sqlite_engine
 
 T = TypeVar("T")
 Work = Callable[[Connection], T]
 
 LARGEST_GROUP = 200
+CONNECT_AGAIN = 20
+"""Tries to have a log; some file systems allow none."""
 EMPTY_AGAIN_S = 0.1
 """Pause between two tries to empty the log."""
 FORGET_WITHIN_S = 0.5
@@ -52,12 +54,14 @@ class Database:
         opened = identity(self._file)
         writing, reading = sqlite_engine(url, "BEGIN IMMEDIATE"), sqlite_engine(url, "BEGIN")
         with refusals(self._file):
-            # Lets readers go on while the writer writes; the file remembers it.
-            in_turn(lambda: run_pragma(writing, "journal_mode=WAL"))
-            self._writer, self._reader = writing.connect(), reading.connect()
-            with self._reader.begin():
-                # From the first read on nobody else removes the log.
-                self._reader.exec_driver_sql("SELECT 1 FROM sqlite_schema")
+            self._writer, self._reader = _connect(writing, reading)
+            for _ in range(CONNECT_AGAIN):
+                if beside(self._file, LOG).exists():
+                    break
+                # Another process closed the file, and with it the log, in this very moment.
+                self._writer.close()
+                self._reader.close()
+                self._writer, self._reader = _connect(writing, reading)
         self._in_use = FilesInUse(self._file)
         if identity(self._file) != opened:
             raise DatabaseUnavailable(f"{self._file}: it was exchanged while it was opened")
@@ -91,15 +95,17 @@ class Database:
         """Return what the function returned, once its transaction is on disk."""
         return await asyncio.wrap_future(self.submit(work))
 
-    async def forget_deleted(self) -> None:
+    async def forget_deleted(self) -> bool:
         """Have the log emptied, which still holds what was deleted from the database.
 
-        Waits for it a moment. Whoever reads an older state of the database hinders it; it is then
-        tried again until it is done, by the next start at the latest.
+        Waits for it a moment; returns whether it is done. Whoever reads an older state of the
+        database hinders it; it is then tried again until it is done, by the next start at the
+        latest.
         """
         emptied: Future[None] = Future()
         self.submit(lambda _connection: self._to_empty.append(emptied))
-        await asyncio.wait([asyncio.wrap_future(emptied)], timeout=FORGET_WITHIN_S)
+        done, _ = await asyncio.wait([asyncio.wrap_future(emptied)], timeout=FORGET_WITHIN_S)
+        return bool(done)
 
     def close(self) -> None:
         """Finish the queued writes and let go of the file."""
@@ -180,6 +186,11 @@ class Database:
             copy.unlink(missing_ok=True)
             reason = refusal_of(error, copy) or error
             return f"Put the files back and start again; no copy could be made ({reason})."
+        if found := damage(copy):
+            return (
+                f"What could still be copied is in {copy}, but damaged ({found}): put the files "
+                "back, or restore your last backup, and start again."
+            )
         return (
             f"All that was acknowledged is in {copy}: stop the server, run goalguess restore "
             f"{copy}, and start it again. Pages keep what is answered until then."
@@ -193,6 +204,17 @@ class Database:
             if not busy:
                 while self._to_empty:
                     self._to_empty.pop().set_result(None)
+
+
+def _connect(writing: Engine, reading: Engine) -> tuple[Connection, Connection]:
+    """A writer and a reader that have the file open together with its log."""
+    # Lets readers go on while the writer writes; the file remembers it.
+    in_turn(lambda: run_pragma(writing, "journal_mode=WAL"))
+    writer, reader = writing.connect(), reading.connect()
+    with reader.begin():
+        # From the first read on nobody else removes the log.
+        reader.exec_driver_sql("SELECT 1 FROM sqlite_schema")
+    return writer, reader
 
 
 def _run_alone(connection: Connection, work: Work[Any]) -> tuple[Any, BaseException | None]:

@@ -26,6 +26,7 @@ from app.steps import ENDINGS, Step, may_withdraw
 from app.study import PILOTS, Study
 
 COOKIE = "goalguess_session"
+"""Under a path its name has the path, too: browsers send a host's other cookies along."""
 COOKIE_SECONDS = 90 * 24 * 3600
 
 PATHS = {
@@ -67,7 +68,12 @@ def services(request: Request) -> Services:
 
 def token_of(request: Request) -> str | None:
     """The session's token in the browser's cookie."""
-    return request.cookies.get(COOKIE)
+    return request.cookies.get(cookie_name(request.scope))
+
+
+def cookie_name(scope: Scope) -> str:
+    """The name of the session's cookie of this study on its host."""
+    return COOKIE + root_path(scope).replace("/", "-")
 
 
 async def participant_at(request: Request, *steps: Step, whose: str | None = None) -> Record:
@@ -106,6 +112,7 @@ def page(
         participant=participant.pseudonym if participant else None,
         pilot=pilot_of(request, participant),
         can_withdraw=participant is not None
+        and participant.proven
         and may_withdraw(Step(participant.step), at.study.settings.study_open),
         status=status,
     )
@@ -185,7 +192,7 @@ class _Elsewhere(RedirectResponse):
         self.headers["location"] = root + self.path
         if self.token:
             self.set_cookie(
-                COOKIE,
+                cookie_name(scope),
                 self.token,
                 max_age=COOKIE_SECONDS,
                 path=root or "/",
@@ -206,7 +213,7 @@ def forget_browser(request: Request, response: Response) -> None:
     root = root_path(request.scope)
     if root:
         # The host is not ours alone: what other sites under it have stored stays.
-        response.delete_cookie(COOKIE, path=root)
+        response.delete_cookie(cookie_name(request.scope), path=root)
     else:
         response.headers["Clear-Site-Data"] = '"cookies", "storage"'
 

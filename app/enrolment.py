@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 from app import books, repository
 from app.assignment import deal_block
 from app.database_files import append_privately
-from app.errors import CLOSED_TO_WITHDRAWAL, NotProven, StudyClosed
+from app.errors import CLOSED_TO_WITHDRAWAL, DatabaseUnavailable, NotProven, StudyClosed
 from app.event_log import note
 from app.questions import CONTROL_RIGHT
 from app.repository import Record
@@ -132,11 +132,15 @@ def withdraw_recruited(connection: Connection, study: Study, recruiter_id: str) 
 def withdraw_participant(connection: Connection, study: Study, participant: Record) -> None:
     """Delete all that is known of a participant, and note it outside the database."""
     # Noted before the commit: a withdrawal that is half done is done at the next start.
-    with append_privately(study.settings.withdrawals_file) as journal:
-        # On a line of its own even if a crash cut the last one short.
-        journal.write(f"\n{participant.pseudonym}\n")
-        journal.flush()
-        os.fsync(journal.fileno())
+    file = study.settings.withdrawals_file
+    try:
+        with append_privately(file) as journal:
+            # On a line of its own even if a crash cut the last one short.
+            journal.write(f"\n{participant.pseudonym}\n")
+            journal.flush()
+            os.fsync(journal.fileno())
+    except OSError as error:
+        raise DatabaseUnavailable(f"{file}: {error.strerror}") from error
     _forget(connection, participant)
 
 

@@ -74,8 +74,8 @@ class NotProven(AppError):
 
     def __init__(self) -> None:
         super().__init__(
-            "Please withdraw in the browser in which you took part, or open here the very "
-            "invitation with which you began. Otherwise, write to the researchers."
+            "Please withdraw in the browser in which you took part, or open here the very link "
+            "with which you began, if it names your session. Otherwise, write to the researchers."
         )
 
 

@@ -17,6 +17,9 @@ from app.study import Study
 PLAYED_ELSEWHERE = "played_elsewhere"
 """Of a trial whose animation another browser of the participant had begun to play."""
 
+CAME_BACK = "came_back"
+"""They went on in another browser."""
+
 MOST_EVENTS = 5000
 """Of one participant's pages; whoever takes part has some hundred."""
 MOST_NOTES = 1000
@@ -30,12 +33,13 @@ def note(
     what: str,
     details: Mapping[str, object],
     index: int | None = None,
+    key: str | None = None,
 ) -> None:
-    """Log something that the server did or noticed."""
+    """Log something that the server did or noticed; of a message by its `key`, once for all."""
     room = MOST_EVENTS + MOST_NOTES - repository.count_events(connection, participant.id)
     if room > 0:
-        key, event = secrets.token_hex(8), _event(what, details, index)
-        _append(connection, study, participant, key, [event])
+        event = _event(what, details, index)
+        _append(connection, study, participant, key or secrets.token_hex(8), [event])
 
 
 def log_message(

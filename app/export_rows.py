@@ -13,7 +13,7 @@ from sqlalchemy import Connection
 from analysis import prediction_time_s, too_fast
 from app import books
 from app.answering import score_trial
-from app.event_log import PLAYED_ELSEWHERE
+from app.event_log import CAME_BACK, PLAYED_ELSEWHERE
 from app.quality import alike, first_decision_s, never_moved_pointer, times_s
 from app.repository import Record
 from app.schemas import pointer_type
@@ -23,6 +23,8 @@ from app.trial_times import TrialTimes, are_impossible, is_impossible, server_st
 from policies import Stimulus
 
 Row = dict[str, Any]
+
+_HAPPENINGS = frozenset(map(str, Happening))
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,13 @@ class Person:
     trials: list[Record]
     events: list[Record]
 
+    def moved_during(self, trial: Record) -> bool:
+        """Whether they went on in another browser while a trial's animation was moving."""
+        return any(
+            event.type == CAME_BACK and trial.played_at <= event.server_time <= trial.stopped_at
+            for event in self.events
+        )
+
     @cached_property
     def times(self) -> list[TrialTimes]:
         """When each trial was given out and answered, and what its page says of times."""
@@ -48,7 +57,8 @@ class Person:
                 answered_at=trial.answered_at,
                 lead_in_ms=trial.lead_in_ms,
                 played_waited_ms=trial.played_waited_ms,
-                seen_ms=trial.position_ms,
+                # In another browser it is taken to have been seen for as long as it can have been.
+                seen_ms=0.0 if self.moved_during(trial) else trial.position_ms,
                 stop_time_ms=trial.stop_time_ms,
             )
             for available_since, trial in zip(given_out[:-1], self.trials, strict=True)
@@ -58,7 +68,7 @@ class Person:
 def people(connection: Connection) -> Iterator[Person]:
     """Every participant in order of arrival, one in memory at a time."""
     trials = _InStep(books.all_trials(connection))
-    types = [*Happening, PLAYED_ELSEWHERE]
+    types = [*Happening, PLAYED_ELSEWHERE, CAME_BACK]
     events = _InStep(books.events_of_types(connection, types))
     for record in books.all_participants(connection):
         yield Person(record, trials.of(record.id), events.of(record.id))
@@ -91,7 +101,7 @@ class Derivation:
         """The rows of a participant's answered trials."""
         elsewhere = {event.trial_index for event in person.events if event.type == PLAYED_ELSEWHERE}
         return [
-            self._trial(trial, times, trial.trial_index in elsewhere)
+            self._trial(trial, times, trial.trial_index in elsewhere or person.moved_during(trial))
             for trial, times in zip(person.trials, person.times, strict=True)
         ]
 
@@ -169,6 +179,8 @@ class Derivation:
             "press_s": _seconds(record.press_ms),
             "last_frame_s": _seconds(record.last_frame_ms),
             "frame_interval_s": _seconds(record.frame_interval_ms),
+            "played_waited_s": _seconds(record.played_waited_ms),
+            "stopped_waited_s": _seconds(record.stopped_waited_ms),
             "server_stretch_s": server_stretch_s(times),
             "impossible_time": _unless_simulated(record, is_impossible(times)),
             "times_clamped": record.times_clamped,
@@ -221,7 +233,7 @@ def _times(person: Person) -> Row:
     happened = [
         (Happening(event.type), event.server_time)
         for event in person.events
-        if event.type != PLAYED_ELSEWHERE
+        if event.type in _HAPPENINGS
     ]
     # The log has the last answer, but not that it was the last.
     if person.record.step == Step.COMPLETED:

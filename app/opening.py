@@ -1,5 +1,6 @@
 """Opening the database of a study: its schema, its pool and seed, those who withdrew."""
 
+import glob
 import secrets
 from pathlib import Path
 
@@ -14,8 +15,11 @@ from app.sqlite import damage
 from app.study import PARTICIPANT, Study
 
 
-def open_database(study: Study) -> Database:
-    """The database of a study's settings, up to date; DatabaseMismatch if it is not ours."""
+def open_database(study: Study, serving: bool = True) -> Database:
+    """The database of a study's settings, up to date; DatabaseMismatch if it is not ours.
+
+    Only who serves it notes the study's definition there.
+    """
     settings = study.settings
     file = settings.database_file
     _expect_no_remains(file)
@@ -23,7 +27,7 @@ def open_database(study: Study) -> Database:
     prepare(settings.database_url, str(file))
     database = Database(settings.database_url)
     try:
-        database.submit(lambda c: _open_books(c, study)).result()
+        database.submit(lambda c: _open_books(c, study, serving)).result()
         database.submit(lambda c: enrolment.withdraw_again(c, study)).result()
         # Whether a withdrawal can be noted is known before somebody withdraws.
         append_privately(settings.withdrawals_file).close()
@@ -79,7 +83,8 @@ def _expect_no_remains(file: Path) -> None:
     """DatabaseUnavailable rather than a new database in the place of one that was lost."""
     if file.exists() and file.stat().st_size:
         return
-    rescued = sorted(file.parent.glob(f"{file.name}.{RESCUED}-*"))
+    real = beside(file, "")
+    rescued = sorted(real.parent.glob(f"{glob.escape(real.name)}.{RESCUED}-*"))
     if rescued:
         raise DatabaseUnavailable(
             f"{file}: it is gone, but what was in it is in {rescued[-1]}; goalguess restore "
@@ -102,9 +107,11 @@ def _expect_sound(file: Path) -> None:
         )
 
 
-def _open_books(connection: Connection, study: Study) -> None:
+def _open_books(connection: Connection, study: Study, serving: bool) -> None:
     """Note the study's definition; DatabaseMismatch if the database was begun otherwise."""
     expect_pool(connection, study)
+    if not serving:
+        return
     books.register_study(connection, study.hash, study.definition, study.pool.hash)
     settings = study.settings
     seed = secrets.randbits(32) if settings.seed is None else settings.seed

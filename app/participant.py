@@ -86,8 +86,9 @@ async def go_on(request: Request) -> Response:
     )
     if gone_on is None:
         return see(f"/?{urlencode(link.fields())}")
-    step, token = gone_on
-    return see(_path(step), token, secure=request.url.scheme == "https")
+    known, token = gone_on
+    path = _path(Step(known.participant.step), known.same_invitation)
+    return see(path, token, secure=request.url.scheme == "https")
 
 
 @router.post("/consent")

@@ -63,16 +63,22 @@ def withdraw(
     from app.recruiter_ids import trimmed
 
     study, wanted = _study_in_use(), trimmed(recruiter_id)
-    with closing(open_database(study)) as database:
+    with closing(open_database(study, serving=False)) as database:
         count = database.submit(lambda c: withdraw_recruited(c, study, wanted)).result()
         if not count:
             raise InvalidInput(
                 "--recruiter-id: expected an id that is stored in "
                 f"{study.settings.database_file}, found nobody with this one"
             )
-        asyncio.run(database.forget_deleted())
+        forgotten = asyncio.run(database.forget_deleted())
     people = "1 participant" if count == 1 else f"{count} participants"
     typer.echo(f"{people} withdrawn: all that was known of them is deleted.")
+    if not forgotten:
+        typer.echo(
+            "While something reads an older state, such as a backup, the database's log still has "
+            "traces of them. They go with the next start of the study.",
+            err=True,
+        )
 
 
 def _study_in_use() -> "Study":

@@ -68,8 +68,19 @@ def read_id(name: str, values: Mapping[str, str]) -> str | None:
     if len(value) > LONGEST:
         raise BadLink(f"{name}: expected {EXPECTED}, came {len(value)} characters.")
     if value and is_placeholder(value):
-        raise BadLink(f"{name}: expected {EXPECTED}, came a placeholder that was not filled in.")
+        raise not_filled_in(name)
     return value or None
+
+
+def is_unfilled(name: str, values: Mapping[str, str]) -> bool:
+    """Whether a parameter holds a placeholder."""
+    value = trimmed(values.get(name, ""))
+    return 0 < len(value) <= LONGEST and is_placeholder(value)
+
+
+def not_filled_in(name: str) -> BadLink:
+    """What is wrong with a link that has a placeholder in a parameter."""
+    return BadLink(f"{name}: expected {EXPECTED}, came a placeholder that was not filled in.")
 
 
 def require_shape(name: str, value: str | None) -> None:

@@ -23,7 +23,7 @@ from analysis import POINTER_TYPES
 
 MOST_MS = 1e11
 """Three years: no page is open for longer."""
-MOST_EVENTS = 200
+MOST_IN_MESSAGE = 200
 LONGEST_DETAILS = 1000
 """Characters of an event's details as JSON; the longest of ours has some 150."""
 
@@ -117,7 +117,7 @@ def _known_events(events: object, info: ValidationInfo) -> object:
     if not isinstance(events, list):
         return events
     kept = []
-    for event in events[:MOST_EVENTS]:
+    for event in events[:MOST_IN_MESSAGE]:
         try:
             kept.append(LoggedEvent.model_validate(event, context=info.context))
         except ValidationError:
@@ -188,12 +188,14 @@ class Stopped(Message):
 
     `stop_time_ms` is where the motion was at the press by the page's clock, whether or not it was
     drawn: `last_frame_ms` is the position drawn last, `frame_interval_ms` the usual time to the
-    next frame. Pages loaded before an upgrade do not tell those.
+    next frame; `played_took_ms` how long it took until the server had acknowledged that the motion
+    began. Pages loaded before an upgrade do not tell those.
     """
 
     stop_time_ms: Milliseconds
     last_frame_ms: Milliseconds | None = None
     frame_interval_ms: Milliseconds | None = None
+    played_took_ms: Milliseconds | None = None
     reached_end: bool
     pauses: Count
     paused_ms: Milliseconds

@@ -1,8 +1,9 @@
 """Sessions: which participant a browser's token stands for, and which browser is the newest.
 
 A session is `proven` when its browser has shown to be the participant's: by consenting or answering
-in it, or by the very invitation they began with. Another browser that came by the recruiter's id
-alone may go on, but neither withdraw nor see the code at the end.
+in it, or by the very invitation they began with, if that names a session. Another browser that came
+by the recruiter's id alone may go on, but not withdraw; nor see the code at the end, if that is of
+another session.
 """
 
 import secrets

@@ -188,8 +188,8 @@ trials = Table(
 `position_ms` is the motion time known to have been seen, from which a broken-off trial goes on.
 `press_ms` and `last_frame_ms` are positions on the same line: of the press on Stop as the page sent
 it, and of the last frame it had drawn; `stop_time_ms` is derived of both. `..._waited_ms` is how
-long the page kept a message before it could send it. `times_clamped`: a time that the page sent
-could not be, and is stored at the bound.
+long the page kept a message before it could send it, or how long that of the first frame took.
+`times_clamped`: a time that the page sent could not be, and is stored at the bound.
 """
 
 events = Table(

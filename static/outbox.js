@@ -13,6 +13,7 @@ export class Outbox {
   #on;
   #queue;
   #events;
+  #took; // path of a delivered message -> how long it took until the server had it
   #waiting = new Map(); // key of a message -> who in this page waits for its reply
   #drained = [];
   #busy = false;
@@ -30,6 +31,7 @@ export class Outbox {
     const kept = read(name);
     this.#queue = kept?.queue ?? [];
     this.#events = kept?.events ?? [];
+    this.#took = kept?.took ?? {};
   }
 
   /** Where the queued messages are to go, in order. */
@@ -43,9 +45,12 @@ export class Outbox {
     this.#keep();
   }
 
-  /** Queue a message; resolves with the server's reply once it has it. */
-  send(path, body) {
-    const { key } = this.#add(path, body);
+  /**
+   * Queue a message; resolves with the server's reply once it has it. Where it follows `after`, the
+   * path of an earlier one, it says how long that one took: it may have been slow on its way.
+   */
+  send(path, body, after = null) {
+    const { key } = this.#add(path, body, after);
     const reply = new Promise((resolve) => this.#waiting.set(key, resolve));
     this.deliver();
     return reply;
@@ -55,7 +60,7 @@ export class Outbox {
   sendLast(path, body) {
     if (this.#closed || !this.#events.length) return;
     const message = this.#add(path, body);
-    if (this.#queue.length === 1) request(message.path, sent(message)).catch(() => {});
+    if (this.#queue.length === 1) request(message.path, this.#sent(message)).catch(() => {});
   }
 
   /** Resolves when everything queued is delivered, also what was queued before a reload. */
@@ -107,9 +112,10 @@ export class Outbox {
       // The first tries, then ever fewer: an outage of a day fills no log.
       if (Number.isInteger(Math.log2(attempt))) this.log("retried", { path, attempt, status });
     };
-    const reply = await patiently(path, () => sent(message), retrying);
+    const reply = await patiently(path, () => this.#sent(message), retrying);
     if (this.#closed) return;
     this.#queue.shift();
+    this.#took[path] = tenths(now() - message.at);
     this.#keep();
     this.#waiting.get(key)?.(reply);
     this.#waiting.delete(key);
@@ -121,28 +127,32 @@ export class Outbox {
     this.#on.late();
   }
 
-  #add(path, body) {
+  /**
+   * A message as it is sent now: it says how long it has waited. One queued before an upgrade
+   * cannot, nor one that was queued before the device's clock was set back.
+   */
+  #sent({ at, after, body }) {
+    const [waited, took] = [now() - at, this.#took[after]];
+    return {
+      ...body,
+      ...(waited >= 0 && { waited_ms: tenths(waited) }),
+      ...(took >= 0 && { played_took_ms: took }),
+    };
+  }
+
+  #add(path, body, after = null) {
     const key = uuid();
     const whose = { key, participant: this.#participant };
     const events = this.#events.splice(0, MOST_EVENTS);
-    const message = { key, path, at: now(), body: { ...whose, ...body, events } };
+    const message = { key, path, after, at: now(), body: { ...whose, ...body, events } };
     this.#queue.push(message);
     this.#keep();
     return message;
   }
 
   #keep() {
-    if (!this.#closed) write(this.#name, { queue: this.#queue, events: this.#events });
+    if (!this.#closed) write(this.#name, { queue: this.#queue, events: this.#events, took: this.#took });
   }
-}
-
-/**
- * A message as it is sent now: it says how long it has waited. One queued before an upgrade cannot,
- * nor one that was queued before the device's clock was set back.
- */
-function sent({ at, body }) {
-  const waited = now() - at;
-  return waited >= 0 ? { ...body, waited_ms: tenths(waited) } : body;
 }
 
 function uuid() {

@@ -121,8 +121,9 @@ function keepReached(time = performance.now()) {
   });
 }
 
-function tell(what, body) {
-  return outbox.send(`/api/trials/${trial.index}/${what}`, body);
+function tell(what, body, after) {
+  const path = (moment) => `/api/trials/${trial.index}/${moment}`;
+  return outbox.send(path(what), body, after && path(after));
 }
 
 function played(time) {
@@ -160,7 +161,7 @@ async function stopped(time) {
     focus_losses: focusLosses,
     frames_dropped: meter.dropped,
     reduced_motion: player.reducedMotion,
-  });
+  }, "played");
   // The server may hold another stop already, made in another tab: that one counts.
   const theirs = reply.repeated ? reply.trial : null;
   const other = theirs && (theirs.index !== index || (theirs.press_ms ?? theirs.stop_time_ms) !== stop_time_ms);

@@ -45,6 +45,8 @@ def trial_row(participant: str, index: int, condition: str, **changes: Any) -> R
         "first_decision_s": 2.0,
         "last_frame_s": None,
         "frame_interval_s": 0.0167,
+        "played_waited_s": 0.0,
+        "stopped_waited_s": None,
         "server_stretch_s": 30.5,
         "impossible_time": False,
         "times_clamped": False,

@@ -25,8 +25,9 @@ def test_the_trials_table_has_the_columns_that_were_agreed():
         stop_time_s length_s prediction_time_s score confidence reached_end steps_seen
         started_at stopped_at answered_at guess_latency_s confidence_latency_s lead_in_s
         pauses paused_s focus_losses reduced_motion frames_dropped pointer_moved
-        first_decision_s too_fast press_s last_frame_s frame_interval_s server_stretch_s
-        impossible_time times_clamped watched_elsewhere simulated preview study_hash app_version
+        first_decision_s too_fast press_s last_frame_s frame_interval_s played_waited_s
+        stopped_waited_s server_stretch_s impossible_time times_clamped watched_elsewhere
+        simulated preview study_hash app_version
     """
     assert list(TRIALS.names) == agreed.split()
 

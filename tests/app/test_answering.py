@@ -308,3 +308,15 @@ def test_a_browser_that_played_unseen_and_was_left_is_noted_when_it_says_so(
     (note,) = [row for row in rows(events) if row.type == "played_elsewhere"]
     assert (note.trial_index, note.details) == (1, {"waited_ms": 60_000})
     assert rows(trials)[0].guess == "A"
+
+
+def test_a_message_whose_reply_was_lost_before_they_moved_tells_of_nothing_unseen(
+    browser, another_browser, rows
+):
+    link = "?PROLIFIC_PID=ann&SESSION_ID=x1"
+    browser.reach_trials(link)
+    sent = messages.played(browser.current()["ticket"])
+    assert browser.send("/api/trials/1/played", sent).status_code == 200
+    another_browser().go_on_here(link)
+    assert browser.send("/api/trials/1/played", sent).json()["error"]["code"] == "moved"
+    assert [row.type for row in rows(events) if row.type == "played_elsewhere"] == []

@@ -298,3 +298,17 @@ def test_a_line_cut_short_in_the_list_of_withdrawals_harms_no_other(browser, set
     browser.post("/withdraw")
     listed = settings.withdrawals_file.read_text().split()
     assert listed == ["abc", rows(participants)[0].pseudonym]
+
+
+def test_a_withdrawal_that_cannot_be_noted_is_not_done_and_may_be_tried_again(
+    browser, rows, monkeypatch
+):
+    def refuse(_file):
+        raise PermissionError(13, "Permission denied")
+
+    browser.consent()
+    with monkeypatch.context() as patched:
+        patched.setattr(enrolment, "append_privately", refuse)
+        assert browser.post("/withdraw").status_code == 503
+    assert rows(participants)[0].step == "about_you"
+    assert location(browser.post("/withdraw")) == "/withdrawn"

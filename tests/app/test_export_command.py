@@ -153,7 +153,7 @@ def test_a_database_of_the_first_version_is_read_and_stays_as_it_is(tmp_path, mo
         names = database.read_now(
             lambda c: c.exec_driver_sql("SELECT pseudonym FROM participants").all()
         )
-    assert names == [("ada",)]
+    assert names == [("ada",), ("bob",), ("eve",)]
     assert contents(tmp_path) == before
 
 

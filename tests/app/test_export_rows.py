@@ -103,6 +103,23 @@ def test_a_stop_before_what_the_server_knows_was_seen_is_flagged(browser, wait, 
     assert of(folder, TRIALS, "impossible_time") == [(True,)]
 
 
+def test_a_stop_that_waited_while_they_were_in_another_browser_is_no_programs(
+    browser, another_browser, wait, write
+):
+    link = "?PROLIFIC_PID=ann&SESSION_ID=x1"
+    browser.reach_trials(link)
+    wait(30)
+    browser.play(1)
+    wait(60)
+    another_browser().go_on_here(link)
+    browser.go_on_here(link)
+    browser.stop(1, 5000, waited_ms=55_000)
+    browser.answer(1)
+    _, folder = write()
+    assert of(folder, TRIALS, "impossible_time", "watched_elsewhere") == [(False, True)]
+    assert of(folder, PARTICIPANTS, "impossible_time") == [(False,)]
+
+
 def test_simulated_participants_keep_a_clock_of_their_own(browser, write):
     browser.take_part("?simulated=1")
     _, folder = write(simulated=True)

@@ -105,3 +105,15 @@ def test_a_link_with_an_id_and_another_parameter_is_no_reason_to_warn(browser, w
     browser.get("/?PROLIFIC_PID=p1&id=7")
     browser.get("/?utm_source=mail")
     assert warnings.messages == []
+
+
+@pytest.mark.parametrize("name", ["STUDY_ID", "SESSION_ID"])
+def test_who_began_before_placeholders_were_refused_goes_on_by_the_same_link(
+    browser, another_browser, name
+):
+    browser.reach_practice("?PROLIFIC_PID=abc")
+    link = f"?PROLIFIC_PID=abc&{name}={name}"
+    assert browser.get(f"/{link}").headers["location"] == "/practice"
+    other = another_browser()
+    assert other.go_on_here(link).headers["location"] == "/practice"
+    assert other.post("/withdraw").status_code == 403

@@ -71,12 +71,12 @@ def lost(settings, request):
 def test_nothing_is_acknowledged_or_read_once_the_files_are_lost(lost, caplog):
     with caplog.at_level(logging.CRITICAL), pytest.raises(DatabaseUnavailable):
         lost.submit(add("later")).result()
-    with pytest.raises(DatabaseUnavailable, match="goalguess restore"):
+    with pytest.raises(DatabaseUnavailable, match="any more"):
         lost.submit(add("later still")).result()
-    with pytest.raises(DatabaseUnavailable, match="goalguess restore"):
+    with pytest.raises(DatabaseUnavailable, match="any more"):
         lost.read_now(lambda connection: connection.execute(select(tallies)).all())
     (said,) = caplog.messages
-    assert "goalguess restore" in said
+    assert "goalguess restore" in said or "restore your last backup" in said
 
 
 @pytest.mark.parametrize("lost", ACCIDENTS[:-1], indirect=True)

@@ -94,6 +94,14 @@ def test_a_page_that_waited_says_for_how_long(browser, rows):
     assert (stored(rows).played_waited_ms, stored(rows).stopped_waited_ms) == (60_000, 50_000)
 
 
+@pytest.mark.parametrize(("waited_ms", "took_ms"), [(0, 4000), (4000, 100)])
+def test_how_long_the_first_message_took_is_known_with_the_stop(browser, rows, waited_ms, took_ms):
+    browser.reach_trials()
+    browser.play(1, waited_ms=waited_ms)
+    browser.stop(1, 3000, played_took_ms=took_ms)
+    assert stored(rows).played_waited_ms == 4000
+
+
 def test_an_answer_belongs_to_the_stop_as_it_was_pressed_or_as_it_is_stored(moving):
     browser, _ = moving
     browser.stop(1, 3254, last_frame_ms=700, frame_interval_ms=16.7)

@@ -67,3 +67,22 @@ def test_no_new_study_is_begun_in_the_place_of_one_that_was_lost(settings, study
     assert (log.read_bytes(), file.exists()) == (b"answers", False)
     log.unlink()
     open_database(study).close()
+
+
+def test_a_lost_study_behind_a_link_is_missed_too(settings, study, tmp_path):
+    file, real = settings.database_file, tmp_path / "real [1]"
+    real.mkdir()
+    rescued = real / "data.sqlite.rescued-20260301T093000Z"
+    file.rename(rescued)
+    file.symlink_to(real / "data.sqlite")
+    with pytest.raises(DatabaseUnavailable, match="goalguess restore"):
+        open_database(study)
+
+
+def test_who_does_not_serve_a_study_registers_none(settings, study):
+    open_database(study).close()
+    slower = load_study(settings.model_copy(update={"step_ms": 2000}))
+    database = open_database(slower, serving=False)
+    kept = database.read_now(lambda connection: connection.execute(studies.select()).all())
+    database.close()
+    assert [row.hash for row in kept] == [study.hash]

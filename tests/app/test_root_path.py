@@ -129,6 +129,17 @@ def test_simulated_participants_take_part_under_a_path(under_prefix, strips):
     assert ends <= {"Thank you, all 10 rounds are in", "Thank you, the study ends here"}
 
 
+def test_a_study_under_a_path_is_not_confused_by_the_cookie_of_one_at_the_top(under_prefix):
+    with TestClient(create_app(under_prefix), base_url=ORIGIN) as client:
+        client.cookies.set("goalguess_session", "of-the-study-at-the-top", path="/")
+        reply = client.get(f"{PREFIX}/")
+        fields = dict(re.findall(r'type="hidden" name="(.*?)" value="(.*?)"', reply.text))
+        form = {**fields, "decision": "yes"}
+        reply = client.post(f"{PREFIX}/consent", data=form, headers={"origin": ORIGIN})
+    assert reply.status_code == 200
+    assert reply.url.path == f"{PREFIX}/about-you"
+
+
 @pytest.mark.parametrize("path", ["/trial", "/api", "/static/lab", "/end", "/health"])
 def test_a_path_that_could_be_a_page_of_the_study_is_refused(settings, path):
     with pytest.raises(InvalidInput, match="GOALGUESS_ROOT_PATH"):

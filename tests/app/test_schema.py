@@ -25,6 +25,11 @@ ROWS_OF_THE_FIRST_VERSION = """
                 '2025-03-01 09:10:20.000000', 'A'),
             (1, 2, 'two', 'study', '0.1.0', 1000, 18000, 1500, '2025-03-01 09:11:00.000000', 0,
                 NULL, NULL);
+    INSERT INTO participants (id, pseudonym, stream, step, study_hash, app_version, control_tries)
+        VALUES (2, 'bob', 'participant', 'trials', 'study', '0.1.0', 1),
+            (3, 'eve', 'participant', 'trials', 'study', '0.1.0', 1);
+    INSERT INTO recruits VALUES (1, 'participant', 'a1 ', ' s1', 'x1'),
+        (2, 'participant', 'b1', NULL, NULL), (3, 'participant', ' b1', NULL, NULL);
     INSERT INTO sessions VALUES ('token', 1, 1, '2025-03-01 09:05:00.000000');
 """
 
@@ -66,6 +71,12 @@ def test_a_database_of_the_first_version_is_upgraded_and_keeps_its_rows(tmp_path
     with sqlite3.connect(file) as connection:
         after = connection.execute("SELECT * FROM trials").fetchall()
         proven = connection.execute("SELECT proven FROM sessions").fetchall()
+        recruits = connection.execute("SELECT * FROM recruits ORDER BY 1").fetchall()
+    assert recruits == [
+        (1, "participant", "a1", "s1", "x1"),
+        (2, "participant", "b1", None, None),
+        (3, "participant", " b1", None, None),  # there is a b1 already
+    ]
     assert len(before) == 2
     assert proven == [(1,)]  # whoever is under way may still withdraw
     kept = len(before[0])

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from app.schemas import (
     LONGEST_DETAILS,
-    MOST_EVENTS,
+    MOST_IN_MESSAGE,
     MOST_MS,
     Answered,
     Logged,
@@ -94,9 +94,9 @@ def test_details_that_cannot_be_kept_are_left_out_of_their_event(details):
 
 
 def test_more_events_than_a_message_holds_are_left_out():
-    events = [messages.event("hidden")] * (MOST_EVENTS + 3)
+    events = [messages.event("hidden")] * (MOST_IN_MESSAGE + 3)
     message = read(Logged, {"key": messages.key(), "events": events})
-    assert len(message.events) == MOST_EVENTS
+    assert len(message.events) == MOST_IN_MESSAGE
     assert message.mended == {"events_left_out": 3}
 
 

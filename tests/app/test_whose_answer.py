@@ -157,6 +157,26 @@ def test_withdrawing_elsewhere_needs_the_invitation_it_began_with(browser, anoth
     assert rows(participants)[0].step == "withdrawn"
 
 
+def test_the_very_invitation_proves_a_browser_that_came_by_another(browser, another_browser):
+    browser.take_part(ANN)
+    other = another_browser()
+    other.go_on_here(ANN_AGAIN)
+    assert other.post("/withdraw").status_code == 403
+    assert "/withdraw" not in other.get("/end").text
+    assert HAS_ENDED in other.get("/" + ANN).text
+    assert location(other.go_on_here(ANN)) == "/end"
+    assert "DONE1" in other.get("/end").text
+    assert location(other.post("/withdraw")) == "/withdrawn"
+
+
+def test_a_button_left_open_by_another_invitation_leads_to_no_code(browser, another_browser):
+    browser.take_part(ANN)
+    other = another_browser()
+    left_open = other.hidden_fields("/" + ANN_AGAIN)
+    other.go_on_here(ANN)
+    assert "DONE1" not in other.get(location(other.post("/go-on", left_open))).text
+
+
 def test_who_has_answered_in_the_other_browser_may_withdraw_there(browser, another_browser):
     browser.reach_practice("?PROLIFIC_PID=ann")
     other = another_browser()

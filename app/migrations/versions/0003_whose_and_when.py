@@ -23,6 +23,9 @@ def upgrade() -> None:
     op.add_column(
         "sessions", sa.Column("proven", sa.Boolean(), nullable=False, server_default=sa.true())
     )
+    # Ids are read without the blanks around them now; of two that become one, both stay.
+    for name in ("recruiter_id", "recruiter_study", "recruiter_session"):
+        op.execute(f"UPDATE OR IGNORE recruits SET {name} = trim({name})")
     op.create_table(
         "declined",
         sa.Column("arrival", sa.String(), nullable=False),
