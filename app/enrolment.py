@@ -70,17 +70,13 @@ def answer_control(
     return _go_on(connection, study, participant, outcome)
 
 
-def has_place(connection: Connection, participant: Record) -> bool:
-    """Whether the participant holds a place."""
-    return repository.place_of(connection, participant.id) is not None
-
-
 def deal_again(
     connection: Connection, study: Study, token: str | None, page: str | None = None
 ) -> None:
     """Deal a place to a participant at the trials whose place went to somebody else."""
     participant = participant_of(connection, token, page)
-    if participant.step == Step.TRIALS and not has_place(connection, participant):
+    placed = repository.place_of(connection, participant.id) is not None
+    if participant.step == Step.TRIALS and not placed:
         deal(connection, study, participant)
 
 

@@ -77,7 +77,7 @@ def test_the_start_names_every_ending_without_a_code():
     assert Settings(researchers="Ada", contact="ada@example.org", codes=CODES).gaps == []
 
 
-def test_the_start_doubts_codes_that_pay_for_another_ending_and_a_way_back_without_any():
+def test_the_start_doubts_codes_shared_with_completed_and_a_way_back_without_any():
     shared = Settings(codes={"completed": "C1", "no_consent": "C1", "failed": "C2"})
     (doubt,) = shared.doubts
     assert doubt.startswith("GOALGUESS_CODES, no_consent: the same code as completed")
