@@ -29,10 +29,10 @@ def test_an_answer_outlives_the_network_the_server_and_its_own_tab(
     walk.answer(page, "D", 6)
     expect(page.locator("#saving")).to_have_text(ANSWER_WAITS)
     site.server.stop()
-    page.close()
-    site.server.start()
+    page.close()  # ends "offline" before the page: its last breath must find nobody to hear it
     (row,) = site.trials()
     assert (row["stop_time_ms"], row["guess"]) == (None, None)
+    site.server.start()
 
     browser.set_offline(False)
     browser.route("**/api/**", lambda route: route.abort())  # the page loads, and no more
