@@ -45,12 +45,18 @@ def breadth_first(after: Integers, start: int, d: Integers, order: Integers) -> 
 
 
 @njit(cache=True, nogil=True)
+def moves_only(after: Integers) -> Integers:
+    """Where moves lead, (S, 4), in a third of the memory: in large mazes that is half the time."""
+    return after[:, :MOVES].astype(np.int32)
+
+
+@njit(cache=True, nogil=True)
 def fill_distances(after: Integers, goals: Integers, d: Integers) -> int:
     """Write the fewest moves to goal n into `d[n, x]`; the least number of cells that reach one."""
-    order = np.empty(len(after) + 1, np.int32)
+    moves, order = moves_only(after), np.empty(len(after) + 1, np.int32)
     least = len(after)
     for n in range(len(goals)):
-        least = min(least, breadth_first(after, goals[n], d[n], order))
+        least = min(least, breadth_first(moves, goals[n], d[n], order))
     return least
 
 

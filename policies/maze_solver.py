@@ -73,12 +73,8 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     Folding a failed action's self-loop leaves a graph with edges cost / .85, where taking up
     cells best first is Dijkstra's algorithm.
     """
-    from policies.value_kernels import spread
+    from policies import value_kernels
 
-    v = np.full(maze.states, -np.inf)
-    v[goal] = 0
-    spread(
-        cells_after(maze, actions), cost, -1 / (1 - FAILURE), 0.0, v, np.array([goal]), maze.states
-    )
-    least: Array = np.abs(v)
+    least = np.empty(maze.states)
+    value_kernels.least_cost(cells_after(maze, actions), cost, FAILURE, goal, least)
     return least
