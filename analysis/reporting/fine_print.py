@@ -22,7 +22,9 @@ _DEFINITIONS = (
     "is no difference.",
     "Clustered by participant and scenario: influence values are summed over participants, over "
     "scenarios and over trials; the variance is the first two less the third, and not less than "
-    "the first; Student's t on the number of scenarios less one.",
+    "the first; Student's t, its degrees of freedom the smaller of the number of scenarios less one "
+    "and those of the participants: Welch's, as the arms share in the variance by participant, or "
+    "with one arm, or participants in both, their number less one. The mixed models take the same.",
     "Where the two-way test and the mixed model fall on different sides of alpha, the conclusion "
     "is drawn from the two-way test.",
     "Intervals are at 95 %. Those of single arms in the paper's block are Wilson's for shares and "
