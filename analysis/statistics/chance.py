@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .degrees_of_freedom import IN_WORDS
+from .degrees_of_freedom import TWO_WAY_DF
 from .influence import of_mean
 from .outcome import Outcome
 from .two_way import SOURCE, TwoWay, two_way
@@ -36,6 +36,6 @@ def _of_arm(outcome: Outcome, data: Outcome, treated: bool, chance: float) -> Tw
         unit=outcome.unit,
         n=len(trials.y),
         n_missing=int(np.isnan(outcome.y[outcome.treated == treated]).sum()),
-        method=f"share against chance, trials clustered by participant and scenario, {IN_WORDS}",
+        method=f"share against chance, trials clustered by participant and scenario, {TWO_WAY_DF}",
         source=SOURCE,
     )

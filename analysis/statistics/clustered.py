@@ -19,7 +19,7 @@ from .codes import (
     ONE_PARTICIPANT,
     SCENARIOS_NOT_SHARED,
 )
-from .degrees_of_freedom import IN_WORDS, by_participant, within_participants
+from .degrees_of_freedom import ONE_WAY_DF, TWO_WAY_DF, by_participant, within_participants
 from .inference import FEW, Inference, student, undefined
 from .influence import Influence, cluster_count, cluster_variance, of_auc, of_difference
 from .outcome import UNKNOWN, Outcome
@@ -93,7 +93,7 @@ def clustered_difference(outcome: Outcome) -> ClusteredDifference:
         unit=outcome.unit,
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="difference of means, trials clustered by participant, t on their degrees of freedom",
+        method=f"difference of means, trials clustered by participant, {ONE_WAY_DF}",
         source="Cochran (1977), Sampling Techniques, ratio estimates; as R's survey::svymean",
         mean_treatment=float(data.y[data.treated].mean()),
         mean_reference=float(data.y[~data.treated].mean()),
@@ -121,7 +121,7 @@ def clustered_auc(outcome: Outcome) -> ClusteredAuc:
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="AUC, trials clustered by participant, t on their degrees of freedom",
+        method=f"AUC, trials clustered by participant, {ONE_WAY_DF}",
         source=OBUCHOWSKI,
         rank_biserial=2 * influence.estimate - 1,
         participants_treatment=treatment.participants,
@@ -141,7 +141,7 @@ def two_way_difference(outcome: Outcome) -> TwoWay:
         unit=outcome.unit,
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method=f"difference of means, trials clustered by participant and scenario, {IN_WORDS}",
+        method=f"difference of means, trials clustered by participant and scenario, {TWO_WAY_DF}",
         source=CAMERON,
     )
 
@@ -150,8 +150,8 @@ def two_way_auc(outcome: Outcome) -> TwoWayAuc:
     """Compare which arm's values tend to be larger, clustered by participant and by scenario.
 
     Participants may be in one arm or in both; t on the degrees of freedom of degrees_of_freedom.py.
-    EmptyArmError if an arm has no value. Source:
-    Obuchowski (1997) for the placements; Cameron, Gelbach and Miller (2011) for two ways.
+    EmptyArmError if an arm has no value. Source: Obuchowski (1997) for the placements; Cameron,
+    Gelbach and Miller (2011) for two ways.
     """
     data = outcome.present()
     influence = of_auc(data)
@@ -162,7 +162,7 @@ def two_way_auc(outcome: Outcome) -> TwoWayAuc:
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method=f"AUC, trials clustered by participant and scenario, {IN_WORDS}",
+        method=f"AUC, trials clustered by participant and scenario, {TWO_WAY_DF}",
         source=f"{OBUCHOWSKI}; {CAMERON}",
         rank_biserial=2 * influence.estimate - 1,
     )

@@ -62,11 +62,11 @@ def crossed_test(
     """Fit values ~ arm + (1 | participant) + (1 | scenario) [+ (1 | scenario in arm)], and test.
 
     By t on the degrees of freedom of the two-way AUC, which for values 0 and 1 are those of the
-    two-way difference; the standard error counts in that variances are estimated. No estimate, and no fit, if all values are equal, if every value of one arm is at
-    least every value of the other (`separation`), if there are more than 500 scenarios or if no
-    maximum is found; no test with one scenario or one participant in an arm. A factor that trials
-    cannot tell from others is left out. Each of these adds a warning. EmptyArmError if an arm has
-    no value.
+    two-way difference; the standard error counts in that variances are estimated. No estimate, and
+    no fit, if all values are equal, if every value of one arm is at least every value of the other
+    (`separation`), if there are more than 500 scenarios or if no maximum is found; no test with one
+    scenario or one participant in an arm. A factor that trials cannot tell from others is left out.
+    Each of these adds a warning. EmptyArmError if an arm has no value.
     """
     from scipy.special import chdtrc
     from threadpoolctl import threadpool_limits

@@ -5,12 +5,14 @@ from __future__ import annotations
 from .influence import cluster_count, cluster_variance
 from .outcome import UNKNOWN, Numbers, Outcome
 
-IN_WORDS = "t on the smaller of scenarios - 1 and the participants' degrees of freedom"
-"""Of `by_participant_and_scenario`, for the method of a result."""
+ONE_WAY_DF = "t on Welch's df over the arms, or participants - 1 where somebody is in both"
+"""What the method of a result says of `by_participant`."""
+TWO_WAY_DF = "t on the smaller of scenarios - 1 and the participants' df"
+"""What it says of `by_participant_and_scenario`."""
 
 
 def participants_of_arms(data: Outcome) -> list[int]:
-    """Return how many participants each arm has that has trials, the treatment's first."""
+    """Return the numbers of participants of the arms that have trials, the treatment's first."""
     arms = (data.treated, ~data.treated)
     return [cluster_count(data.participant[arm]) for arm in arms if arm.any()]
 
@@ -21,7 +23,7 @@ def within_participants(data: Outcome) -> bool:
 
 
 def by_participant(data: Outcome, h: Numbers) -> float:
-    """Return those of a variance from sums of influence `h`, shape (N,), over participants.
+    """Return the degrees of freedom of sums of influence `h`, shape (N,), over participants.
 
     Different participants in the arms: Welch's, as the arms share in the variance. Somebody in both
     arms: the participants less one of the arm with fewer, which is Student's paired t where all are
@@ -39,7 +41,7 @@ def by_participant(data: Outcome, h: Numbers) -> float:
 
 
 def by_participant_and_scenario(data: Outcome, h: Numbers) -> float:
-    """Return those of a variance from sums of `h` over participants and over scenarios.
+    """Return the degrees of freedom of sums of `h` over participants and over scenarios.
 
     The smaller of `by_participant` and scenarios less one; without a known scenario the former.
     """
