@@ -7,6 +7,8 @@ WARNINGS = {
     "hold 0 though the Mann-Whitney test rejects it; it is left out, and the AUC tells more",
     codes.CONSTANT_OUTCOME: "all values are equal, so the test is not defined",
     codes.DEGENERATE_MARGIN: "all guesses were alike, so the arms cannot be told apart",
+    codes.FEW_AND_UNEQUAL: "the arms have so few participants, and so unequal numbers of them, "
+    "that a test at .05 finds a difference where there is none in more than 6 % of studies",
     codes.FEW_CLUSTERS: "fewer than 10 participants in an arm, or scenarios; interval and p are "
     "rough",
     codes.NOT_CONVERGED: "the fit did not converge, so nothing is estimated",

@@ -3,6 +3,7 @@
 COARSE_VALUES = "coarse_values"
 CONSTANT_OUTCOME = "constant_outcome"
 DEGENERATE_MARGIN = "degenerate_margin"
+FEW_AND_UNEQUAL = "few_and_unequal"
 FEW_CLUSTERS = "few_clusters"
 NOT_CONVERGED = "not_converged"
 NO_OVERLAP = "no_overlap"

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .codes import FEW_CLUSTERS, NO_SCENARIO_KNOWN, ONE_PARTICIPANT, ONE_SCENARIO
+from .codes import NO_SCENARIO_KNOWN, ONE_PARTICIPANT, ONE_SCENARIO
 from .degrees_of_freedom import by_participant_and_scenario, participants_of_arms
-from .inference import FEW, Inference, student, undefined
+from .few_clusters import few
+from .inference import Inference, student, undefined
 from .influence import ROUNDING, Influence, cluster_count, cluster_variance
 from .outcome import UNKNOWN, Outcome
 from .result import TestResult
@@ -57,17 +58,15 @@ def two_way(data: Outcome, influence: Influence, null: float, *warnings: str) ->
     v_participant = cluster_variance(influence.h, data.participant)
     v_scenario = cluster_variance(h, scenario)
     v_trial = cluster_variance(h, np.arange(len(h)))
-    participants, scenarios = cluster_count(data.participant), cluster_count(scenario)
-    fewest = min(participants_of_arms(data))
-    if v_participant is None or fewest == 1:
+    participants, scenarios = participants_of_arms(data), cluster_count(scenario)
+    if v_participant is None or min(participants) == 1:
         inference = undefined(influence.estimate, null, *warnings, ONE_PARTICIPANT)
     elif scenarios == 1:
         inference = undefined(influence.estimate, null, *warnings, ONE_SCENARIO)
     else:
         if scenarios == 0:
             warnings = (*warnings, NO_SCENARIO_KNOWN)
-        if min(fewest, scenarios or fewest) < FEW:
-            warnings = (*warnings, FEW_CLUSTERS)
+        warnings = (*warnings, *few(participants, scenarios))
         beyond_participants = (v_scenario or 0.0) - (v_trial or 0.0)
         variance = v_participant + max(beyond_participants, 0.0)
         if variance < ROUNDING * (v_scenario or 0.0):
@@ -79,6 +78,6 @@ def two_way(data: Outcome, influence: Influence, null: float, *warnings: str) ->
         v_participant=v_participant,
         v_scenario=v_scenario,
         v_trial=v_trial,
-        participants=participants,
+        participants=cluster_count(data.participant),
         scenarios=scenarios,
     )

@@ -107,6 +107,23 @@ def test_what_cannot_be_tested_is_said_so(tmp_path):
     assert markdown(report_parts(results)).count("no difference shown at alpha = .05") == 3
 
 
+def test_arms_too_few_and_unequal_for_the_tests_level_are_told_in_every_answer(
+    paper_fixture, tmp_path
+):
+    trials = pl.read_csv(paper_fixture)
+    people = trials.select("participant", "condition").unique(maintain_order=True)
+    kept = people.group_by("condition", maintain_order=True).map_groups(
+        lambda arm: arm.head(4 if arm["condition"][0] == "polmdp" else 12)
+    )
+    trials.join(kept, on="participant", how="semi").write_csv(tmp_path / "few.csv")
+    parts = report_parts(analyse_path(tmp_path / "few.csv"))
+    answers = [part.text for part in parts if isinstance(part, Finding)]
+    assert len(answers) == 3
+    for answer in answers:
+        assert "finds a difference where there is none in more than 6 % of studies." in answer
+        assert "interval and p are rough" not in answer
+
+
 def test_an_interval_wider_than_possible_is_said_to_be_in_the_answer_and_in_the_table(
     paper_fixture, tmp_path
 ):
