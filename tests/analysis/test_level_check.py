@@ -4,8 +4,10 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import alone
-from analysis.crossed_model import Spread, halves
+from analysis.crossed_model import Design, Spread, halves
 from analysis.level_check import LevelTable, level_check
+from analysis.simulated_studies import TESTS
+from analysis.statistics.clustered import two_way_auc, two_way_difference
 
 HARD = Spread(0.8, 0.5, 0.8)
 NONE = Spread(0, 0, 0)
@@ -41,6 +43,28 @@ def test_the_level_of_models_is_checked_too():
     assert [each.rejected.n for row in table.rows.values() for each in row] == [2, 2]
 
 
+def test_every_primary_test_of_a_plan_is_there_for_each_measure():
+    for tests in TESTS.values():
+        assert {two_way_difference, two_way_auc} <= set(tests.values())
+
+
+def test_of_correct_guesses_difference_and_auc_are_one_test():
+    """An AUC of values 0 and 1 is .5 and half their difference."""
+    tests = ("two_way_difference", "two_way_auc_of_correct", "two_way_difference_of_confidence")
+    difference, auc, other = (
+        shares(checked(tests, (HARD,), studies=60, participants=16), test) for test in tests
+    )
+    assert difference == auc
+    assert difference != other
+
+
+def test_arms_of_other_sizes_have_another_level_and_few_unequal_ones_too_high_a_one():
+    design = Design(4, 24, trials_each=12, scenarios=200)
+    tests = ("two_way_difference",)
+    table = level_check((Spread(0.8, 0, 0),), tests, design, 1500, 1, 1, lambda _done: None)
+    assert shares(table, "two_way_difference")[0] > 0.05 + 1.5 * table.monte_carlo_error
+
+
 def test_the_monte_carlo_error_is_that_of_a_share_of_5_percent():
     assert LevelTable((), 2000, {}).monte_carlo_error == pytest.approx(0.00955, abs=1e-5)
 
@@ -58,6 +82,17 @@ def test_the_command_prints_a_row_a_test_and_a_column_for_each_of_the_sds():
     ]
     assert "10 + 10 participants with 10 trials each of 37 scenarios" in " ".join(lines)
     assert "Monte-Carlo error" in result.stdout
+
+
+def test_the_rate_of_a_test_is_the_last_word_of_its_line():
+    options = ["--sds", ".8/.5/.8", "--tests", "two_way_difference", "--participants", "3/5"]
+    sizes = ["--trials", "7", "--scenarios", "4", "--replicates", "20", "--workers", "1"]
+    result = run(*options, *sizes)
+    assert result.exit_code == 0, result.stderr
+    said = " ".join(result.stdout.split())
+    assert "3 + 5 participants with 7 trials each of 4 scenarios" in said
+    (line,) = [line for line in result.stdout.splitlines() if line.startswith("two-way")]
+    assert 0 <= float(line.split()[-1]) < 0.5
 
 
 @pytest.mark.parametrize(
