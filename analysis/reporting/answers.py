@@ -12,7 +12,7 @@ from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import capital, format_alpha, format_p, percent
 from .document import Finding, Paragraph, Part
-from .effects import beyond, effect_of, estimate, interval, statement
+from .effects import beyond, decimals_beside, effect_of, estimate, interval, statement
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,8 @@ def _effect(conclusion: Conclusion, arms: Arms) -> str:
         return "Effect not defined"
     bounds = "" if primary.low is None else f", 95 % interval {interval(primary)}"
     if primary.unit != "probability":
-        return f"Difference {effect_of(primary).with_unit(primary.estimate)}{bounds}"
+        difference = effect_of(primary).with_unit(primary.estimate, decimals_beside(primary))
+        return f"Difference {difference}{bounds}"
     words, auc = WORDS[conclusion.measure], primary.estimate
     more_often, share = (words.more, auc) if auc >= primary.null else (words.less, 1 - auc)
     return (
