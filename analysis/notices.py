@@ -32,8 +32,8 @@ def _about_dropout(data: Dataset, dropout: Dropout) -> list[Notice]:
     text = (
         f"Differential dropout: {dropout.left_treatment} of {dropout.participants_treatment} left "
         f"with {treatment}, {dropout.left_reference} of {dropout.participants_reference} with "
-        f"{reference} (Fisher's exact {format_p(dropout.fisher_p, alpha=alpha)}). Those who stayed may "
-        "differ between the arms for other reasons than the condition."
+        f"{reference} (Fisher's exact {format_p(dropout.fisher_p, alpha=alpha)}). Those who "
+        "stayed may differ between the arms for other reasons than the condition."
     )
     return [Notice("differential_dropout", "participants", text)]
 

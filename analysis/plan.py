@@ -170,8 +170,9 @@ def _arm(section: Section) -> Arm:
 
 def _alpha(plan: Section) -> float:
     alpha = plan.number("alpha")
-    if not 0 < alpha < 1:
-        raise plan.wrong("alpha", "a number above 0 and below 1", alpha)
+    # from .5 on there is no interval of 1 - 2 alpha
+    if not 0 < alpha < 0.5:
+        raise plan.wrong("alpha", "a number above 0 and below 0.5", alpha)
     return alpha
 
 

@@ -20,9 +20,10 @@ _MOST_DECIMALS = 12
 
 
 class Write(Protocol):
-    """Writes a number with its usual decimals and `more`."""
+    """How numbers of a kind are written."""
 
-    def __call__(self, value: float, more: int = 0, /) -> str: ...
+    def __call__(self, value: float, more: int = 0, /) -> str:
+        """Write a number with the usual decimals and `more`."""
 
 
 def format_p(p: float | None, relation: str = "=", alpha: float = ALPHA) -> str:

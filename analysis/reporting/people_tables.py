@@ -69,7 +69,8 @@ def _who_left(evidence: Evidence, plan: Plan) -> str:
         f"Left: {left.left_treatment} of {left.participants_treatment} with "
         f"{arms.treatment.label}, {left.left_reference} of {left.participants_reference} with "
         f"{arms.reference.label} ({evidence.sensitivity.counted}). Difference {value(left)} "
-        f"{effect_of(left).unit}, 95 % interval {interval(left)} by Newcombe's method. Fisher's exact test, which is another "
+        f"{effect_of(left).unit}, 95 % interval {interval(left)} by Newcombe's "
+        "method. Fisher's exact test, which is another "
         f"than the interval's: {format_p(left.fisher_p, alpha=plan.alpha)}."
     )
 

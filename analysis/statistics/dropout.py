@@ -18,8 +18,8 @@ from .two_by_two import TwoByTwo, fisher_exact, risk_difference
 class Dropout(TestResult):
     """Difference of the shares who left, positive if more left in the treatment arm.
 
-    `left_*` of `participants_*` of each arm did not complete. `fisher_p` is of another test than the
-    interval, which may exclude 0 where Fisher's exact test does not reject it, so it is not `p`.
+    `left_*` of `participants_*` of each arm did not complete. `fisher_p` is of another test than
+    the interval, which may exclude 0 where Fisher's exact test does not reject it: it is no `p`.
     """
 
     fisher_p: float

@@ -18,7 +18,9 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class IntraclassCorrelation(TestResult):
-    """Correlation of two trials of a participant within an arm; F tests, two-sided, whether it is 0.
+    """Correlation of two trials of a participant within an arm; F tests whether it is 0.
+
+    p is two-sided, as the interval is.
 
     `trials_per_participant` is the number with which the design effect of a difference between
     the arms is 1 + (trials_per_participant - 1) estimate: in an arm of n trials the mean over

@@ -8,13 +8,13 @@ statsmodels' BinomialBayesMixedGLM is a Bayesian approximation to another model.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .crossed_fit import CrossedFit
 from .crossed_test import CrossedResult, crossed_test
-from .outcome import Outcome
+from .outcome import UNKNOWN, Outcome
 
 _NODES = 64
 """Of the quadrature: exact to 1e-9 for standard deviations up to 3 on the logit scale."""
@@ -26,7 +26,7 @@ class CrossedLogistic(CrossedResult):
 
     `intercept`: log odds in the reference arm, of a participant and scenario with effects 0.
     `risk_difference`, from -1 to 1, with its 95 % interval: of the shares that the model expects in
-    the arms over all participants and scenarios. It excludes 0 exactly if that of the estimate does.
+    the arms over all participants and scenarios. It excludes 0 if and only if the estimate's does.
     """
 
     intercept: float | None
@@ -47,10 +47,24 @@ def crossed_logistic(outcome: Outcome, interaction: bool = True) -> CrossedLogis
     Statistical Association 88, 9-25; Baayen, Davidson and Bates (2008), Journal of Memory and
     Language 59, 390-412.
     """
+    return _logistic(outcome, interaction, "Crossed logistic mixed model")
+
+
+def participant_logistic(outcome: Outcome) -> CrossedLogistic:
+    """Test the arm in correct ~ arm + (1 | participant): scenarios are left out of account.
+
+    It rejects too often where scenarios differ between the arms. `outcome.y` is 1 where correct,
+    else 0; all else is as in `crossed_logistic`, t on the participants' degrees of freedom.
+    """
+    without = replace(outcome, scenario=np.full_like(outcome.scenario, UNKNOWN))
+    return _logistic(without, False, "Logistic mixed model of participants only")
+
+
+def _logistic(outcome: Outcome, interaction: bool, method: str) -> CrossedLogistic:
     result, fit = crossed_test(
         outcome,
         interaction=interaction,
-        method="Crossed logistic mixed model",
+        method=method,
         source="Breslow and Clayton (1993); agrees with R glmmTMB",
     )
     difference = low = high = None

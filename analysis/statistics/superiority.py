@@ -122,8 +122,12 @@ def _posterior(right: Numbers, trials: Numbers) -> _Posterior:
     from scipy.special import expit, logit
 
     density = _LogDensity(right, trials)
-    start = [logit((right.sum() + 1) / (trials.sum() + 2)), -2.0]
-    mode = optimize.minimize(lambda at: -float(density(at[0], at[1])), start, method="Nelder-Mead").x
+
+    def descent(at: Numbers) -> float:
+        return -float(density(at[0], at[1]))
+
+    start = np.array([float(logit((right.sum() + 1) / (trials.sum() + 2))), -2.0])
+    mode: Numbers = optimize.minimize(descent, start, method="Nelder-Mead").x
     widths = [density.width(mode, axis) for axis in (0, 1)]
     (t, y, dy), (_, x, dx) = (_nodes(at, width) for at, width in zip(mode, widths, strict=True))
     joint = density(y[:, None], x)
@@ -141,7 +145,7 @@ def _posterior(right: Numbers, trials: Numbers) -> _Posterior:
 def _nodes(mode: float, width: float) -> tuple[Numbers, Numbers, Numbers]:
     """Return even steps of t, the logits there and their derivatives by t."""
     half = int(np.ceil(np.arcsinh(_REACH / width) / _STEP))
-    t = _STEP * np.arange(-half, half + 1)
+    t: Numbers = _STEP * np.arange(-half, half + 1, dtype=np.float64)
     return t, mode + width * np.sinh(t), width * np.cosh(t)
 
 
