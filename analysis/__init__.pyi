@@ -32,6 +32,8 @@ from .reader import read_dataset as read_dataset
 from .results import Results as Results
 from .results import analyse_path as analyse_path
 from .spreadsheet import spreadsheet_text as spreadsheet_text
+from .statistics.mixed_model import crossed_logistic as crossed_logistic
+from .statistics.mixed_model import participant_logistic as participant_logistic
 from .tables import read_table as read_table
 from .tables import write_table as write_table
 from .tables import write_tables as write_tables

@@ -9,6 +9,7 @@ from typing import Literal
 from .methods import MODELS, Comparison
 from .plan import Plan
 from .statistics.codes import CONSTANT_OUTCOME
+from .statistics.equivalence import Equivalence, two_one_sided
 from .statistics.family import holm
 from .statistics.result import TestResult
 
@@ -22,6 +23,14 @@ EXPECTED: Mapping[str, Direction] = {
 }
 """What the hypotheses say of the treatment: more guesses correct, sooner, with more confidence."""
 
+SMALLEST_EFFECT_KEYS = {
+    "share": "share",
+    "probability": "auc",
+    "s": "s",
+    "scale points": "scale_points",
+}
+"""The plan's key of the smallest effect of interest, by the unit of a primary test."""
+
 
 @dataclass(frozen=True)
 class Conclusion:
@@ -31,6 +40,8 @@ class Conclusion:
     `primary` alone, by `p_holm` where the measure is of the family (None elsewhere). `model` is the
     mixed model beside it, None where there is none; `model_p_holm` and `model_direction` are what
     its p would make of the same family in the place of the primary test's, "undefined" without one.
+    Where no difference is shown, `equivalence` tells what can be excluded, None where the plan
+    names no smallest effect of interest in the unit of the test.
     """
 
     hypothesis: str
@@ -42,6 +53,7 @@ class Conclusion:
     model: TestResult | None
     model_p_holm: float | None
     model_direction: Direction
+    equivalence: Equivalence | None
 
     @property
     def models_agree(self) -> bool | None:
@@ -55,14 +67,15 @@ def conclude(plan: Plan, comparisons: Mapping[str, Comparison]) -> tuple[Conclus
     """Answer each hypothesis of the plan, in its order."""
     family = {measure: _tested_p(comparisons[measure].primary) for measure in plan.holm_family}
     return tuple(
-        _conclusion(plan.alpha, each.hypothesis, comparisons[each.measure], family)
+        _conclusion(plan, each.hypothesis, comparisons[each.measure], family)
         for each in plan.primary
     )
 
 
 def _conclusion(
-    alpha: float, hypothesis: str, compared: Comparison, family: Mapping[str, float | None]
+    plan: Plan, hypothesis: str, compared: Comparison, family: Mapping[str, float | None]
 ) -> Conclusion:
+    alpha = plan.alpha
     primary = compared.primary
     model = next(filter(None, (compared.results.get(key) for key in MODELS)), None)
     p_holm, direction = _shown(primary, compared.measure, family, alpha)
@@ -77,7 +90,18 @@ def _conclusion(
         model=model,
         model_p_holm=model_p_holm,
         model_direction=model_direction,
+        equivalence=_equivalence(primary, plan) if direction == "none" else None,
     )
+
+
+def _equivalence(primary: TestResult, plan: Plan) -> Equivalence | None:
+    """Test what can be excluded, at the plan's alpha and not by Holm.
+
+    Holm's correction keeps down the chance that any of the family shows a difference where there is
+    none. What is excluded is said of one measure, with the interval that goes with it.
+    """
+    smallest_effect = plan.smallest_effects.get(SMALLEST_EFFECT_KEYS[primary.unit])
+    return None if smallest_effect is None else two_one_sided(primary, smallest_effect, plan.alpha)
 
 
 def _tested_p(test: TestResult) -> float | None:

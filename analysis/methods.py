@@ -25,14 +25,20 @@ from .statistics.estimates import Mean, mean
 from .statistics.gee import LARGEST as MOST_PARTICIPANTS_OF_GEE
 from .statistics.gee import gee_logistic
 from .statistics.influence import cluster_count
-from .statistics.mixed_model import crossed_logistic
+from .statistics.mixed_model import crossed_logistic, participant_logistic
 from .statistics.ordinal_mixed import crossed_ordinal
 from .statistics.outcome import Outcome
 from .statistics.participants import by_participant
 from .statistics.permutation import cluster_permutation
-from .statistics.ranks import brunner_munzel, hodges_lehmann, mann_whitney
+from .statistics.ranks import (
+    brunner_munzel,
+    hodges_lehmann,
+    mann_whitney,
+    mann_whitney_exact_if_few,
+)
 from .statistics.rao_scott import rao_scott
 from .statistics.result import TestResult
+from .statistics.superiority import Superiority, superiority
 from .statistics.two_by_two import (
     TwoByTwo,
     chi_square,
@@ -65,7 +71,8 @@ class Method:
 class Comparison:
     """One measure compared by every method, results by the method's key, in the tables' order.
 
-    `means` has the treatment's and the reference's; `left_out` says of methods not run why.
+    `means` has the treatment's and the reference's; `left_out` says of methods not run why;
+    `superiority` is of correct guesses, None for other measures.
     """
 
     measure: str
@@ -74,6 +81,7 @@ class Comparison:
     primary_key: str
     results: Mapping[str, TestResult]
     left_out: Mapping[str, str]
+    superiority: Superiority | None = None
 
     @property
     def primary(self) -> TestResult:
@@ -98,7 +106,13 @@ def compare(data: Dataset, primary: Primary) -> Comparison:
         mean(given.y[arm], given.unit) for arm in (given.treated, ~given.treated)
     )
     return Comparison(
-        primary.measure, given.unit, (treatment, reference), primary.test, results, left_out
+        primary.measure,
+        given.unit,
+        (treatment, reference),
+        primary.test,
+        results,
+        left_out,
+        superiority(given) if primary.measure == "correct" else None,
     )
 
 
@@ -152,7 +166,7 @@ def _of_participants(given: Outcome) -> TestResult:
     """Mann-Whitney test of the participants' means."""
     people = by_participant(given)
     means, treated = people.means, people.treated
-    test = mann_whitney(means[treated], means[~treated], given.name, of="participants")
+    test = mann_whitney_exact_if_few(means[treated], means[~treated], given.name, of="participants")
     return replace(test, n_missing=people.n_missing)
 
 
@@ -168,6 +182,11 @@ _PARTICIPANTS = {
 _OF_CORRECT = {
     "crossed_logistic": Method(
         "Crossed logistic mixed model", crossed_logistic, most_trials=MOST_TRIALS_OF_MODELS
+    ),
+    "participant_logistic": Method(
+        "Logistic mixed model, participants only",
+        participant_logistic,
+        most_trials=MOST_TRIALS_OF_MODELS,
     ),
     "clustered_difference": Method("Difference, clustered by participant", clustered_difference),
     "gee_logistic": Method(

@@ -26,14 +26,14 @@ def notices(data: Dataset, evidence: Evidence) -> list[Notice]:
 def _about_dropout(data: Dataset, dropout: Dropout) -> list[Notice]:
     """Tell that the arms lost different shares: who stayed is no longer dealt at random."""
     alpha = data.plan.alpha
-    if dropout.p is None or dropout.p >= alpha:
+    if dropout.fisher_p >= alpha:
         return []
     treatment, reference = data.arms.labels.values()
     text = (
         f"Differential dropout: {dropout.left_treatment} of {dropout.participants_treatment} left "
         f"with {treatment}, {dropout.left_reference} of {dropout.participants_reference} with "
-        f"{reference} (Fisher's exact {format_p(dropout.p, alpha=alpha)}). Those who stayed may "
-        "differ between the arms for other reasons than the condition."
+        f"{reference} (Fisher's exact {format_p(dropout.fisher_p, alpha=alpha)}). Those who "
+        "stayed may differ between the arms for other reasons than the condition."
     )
     return [Notice("differential_dropout", "participants", text)]
 

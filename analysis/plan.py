@@ -6,6 +6,7 @@ default. Two plans that say the same have the same hash, however their files are
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -27,6 +28,12 @@ TIME_COLUMNS = {"penalised": "prediction_time_s", "stop": "stop_time_s"}
 _HYPOTHESES = {"correct": "H1", "time": "H2", "confidence": "H2"}
 """What the plan calls the measures, and the hypothesis each one is for."""
 
+SMALLEST_EFFECTS = {"share": 0.05, "auc": 0.05}
+"""Smallest effects of interest where the plan names no other, by the key of the plan."""
+
+_LARGEST_EFFECTS = {"share": 1.0, "auc": 0.5, "s": math.inf, "scale_points": math.inf}
+"""By the keys of `smallest_effect`: effects, and distances of an AUC from a half, are less."""
+
 _KEYS = (
     "alpha",
     "time",
@@ -37,6 +44,7 @@ _KEYS = (
     "treatment",
     "reference",
     "primary",
+    "smallest_effect",
     "exclusions",
 )
 
@@ -56,7 +64,9 @@ class Plan:
 
     `alpha` is two-sided; `time` a key of `TIME_COLUMNS`; `primary` has one test for each measure;
     `holm_family` names, by their columns, the measures whose primary p values are corrected
-    together; `choices` counts the areas to guess among; `file` is where it was read from.
+    together; `choices` counts the areas to guess among; `smallest_effects` are the least that are
+    of interest, by `share`, `auc` (from a half), `s` and `scale_points`, none where the plan names
+    none; `file` is where it was read from.
     """
 
     arms: Arms
@@ -67,6 +77,7 @@ class Plan:
     choices: int
     trials_per_participant: int
     exclusions: tuple[Exclusion, ...]
+    smallest_effects: Mapping[str, float]
     seed: int
     file: str
 
@@ -77,8 +88,12 @@ class Plan:
 
     @property
     def content(self) -> dict[str, Any]:
-        """What the plan says, under the keys of its file."""
-        return {
+        """What the plan says, under the keys of its file.
+
+        Keys that came later are left out where they say what the default says, so that plans
+        registered before keep their hash.
+        """
+        said = {
             "alpha": self.alpha,
             "time": self.time,
             "holm_family": [_in_plan(measure) for measure in self.holm_family],
@@ -90,6 +105,9 @@ class Plan:
             "primary": {_in_plan(each.measure): each.test for each in self.primary},
             "exclusions": [{"rule": each.rule, **each.parameters} for each in self.exclusions],
         }
+        if self.smallest_effects != SMALLEST_EFFECTS:
+            said["smallest_effect"] = dict(self.smallest_effects)
+        return said
 
     @property
     def sha256(self) -> str:
@@ -106,6 +124,7 @@ def default_plan() -> Plan:
 def read_plan(path: Path) -> Plan:
     """Read a plan; what it leaves out is as in the default plan, tables as a whole.
 
+    Only of `smallest_effect` each key stands for itself.
     TomlError names file and key of the first thing that cannot be followed.
     """
     return _plan(path.name, read_toml(DEFAULT_FILE) | read_toml(path))
@@ -124,6 +143,7 @@ def _plan(file: str, content: Mapping[str, Any]) -> Plan:
         choices=plan.whole("choices", least=2),
         trials_per_participant=plan.whole("trials_per_participant", least=1),
         exclusions=tuple(_exclusion(each) for each in plan.sections("exclusions")),
+        smallest_effects=_smallest_effects(plan.section("smallest_effect")),
         seed=plan.whole("seed"),
         file=file,
     )
@@ -150,8 +170,9 @@ def _arm(section: Section) -> Arm:
 
 def _alpha(plan: Section) -> float:
     alpha = plan.number("alpha")
-    if not 0 < alpha < 1:
-        raise plan.wrong("alpha", "a number above 0 and below 1", alpha)
+    # from .5 on there is no interval of 1 - 2 alpha
+    if not 0 < alpha < 0.5:
+        raise plan.wrong("alpha", "a number above 0 and below 0.5", alpha)
     return alpha
 
 
@@ -170,6 +191,17 @@ def _family(plan: Section, time: str) -> tuple[str, ...]:
     if not isinstance(family, list) or len(chosen) < len(family):
         raise plan.wrong("holm_family", f"a list of some of {', '.join(_HYPOTHESES)}", family)
     return tuple(_column(measure, time) for measure in chosen)
+
+
+def _smallest_effects(section: Section) -> dict[str, float]:
+    section.allow(_LARGEST_EFFECTS)
+    named = {key: section.number(key) for key in _LARGEST_EFFECTS if key in section.content}
+    for key, effect in named.items():
+        largest = _LARGEST_EFFECTS[key]
+        if not 0 < effect < largest:
+            below = "" if largest == math.inf else f" and below {largest:g}"
+            raise section.wrong(key, f"a number above 0{below}", section.content[key])
+    return {**SMALLEST_EFFECTS, **named}
 
 
 def _exclusion(section: Section) -> Exclusion:

@@ -2,18 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Protocol
+
+from .statistics.estimates import LEVEL
 from .statistics.normality import Normality
 from .statistics.ranks import MannWhitney
 from .statistics.two_by_two import ChiSquare
 
 ALPHA = 0.05
 
+_OF_INTERVALS = round(1 - LEVEL, 12)
+"""The p at which an interval begins to exclude the null value."""
+
+_MOST_DECIMALS = 12
+"""More than these tell apart what rounding in the computation does not."""
+
+
+class Write(Protocol):
+    """How numbers of a kind are written."""
+
+    def __call__(self, value: float, more: int = 0, /) -> str:
+        """Write a number with the usual decimals and `more`."""
+
 
 def format_p(p: float | None, relation: str = "=", alpha: float = ALPHA) -> str:
-    """Write a p value with three decimals, with more where rounding would carry it over `alpha`.
+    """Write a p value with three decimals, with more where rounding would carry it over a level.
 
-    Below .001 and above .999 it is a bound, None is NA; `relation` is "<=" or ">=" where p
-    itself is one.
+    The levels are `alpha` and that of all intervals, which may stand beside p. Below .001 and above
+    .999 it is a bound, None is NA; `relation` is "<=" or ">=" where p itself is one.
     """
     if p is None:
         return "p = NA"
@@ -22,9 +39,27 @@ def format_p(p: float | None, relation: str = "=", alpha: float = ALPHA) -> str:
     if p >= 0.9995:
         return "p > .999"
     decimals = 3
-    while (p < alpha) != (round(p, decimals) < alpha):
+    while any((p < level) != (round(p, decimals) < level) for level in (alpha, _OF_INTERVALS)):
         decimals += 1
     return f"p {relation} {without_zero(p, decimals)}"
+
+
+def more_decimals(rising: Sequence[tuple[float, float]], write: Write) -> int:
+    """Return how many more decimals it takes to print the first of each pair below its second."""
+    for more in range(_MOST_DECIMALS):
+        if all(float(write(low, more)) < float(write(high, more)) for low, high in rising):
+            return more
+    return _MOST_DECIMALS
+
+
+def decimals_of_interval(low: float | None, high: float | None, null: float, write: Write) -> int:
+    """Return how many decimals more an interval needs to exclude `null` as printed, if it does.
+
+    One that holds it needs none: rounding carries no bound over.
+    """
+    if low is None or high is None:
+        return 0
+    return more_decimals([pair for pair in ((null, low), (high, null)) if pair[0] < pair[1]], write)
 
 
 def format_alpha(alpha: float) -> str:
@@ -42,9 +77,9 @@ def format_u(u: float) -> str:
     return f"{u:.0f}" if u == int(u) else f"{u:.1f}"
 
 
-def percent(share: float) -> str:
-    """Write a share as a percentage with one decimal."""
-    return f"{100 * share:.1f} %"
+def percent(share: float, more: int = 0) -> str:
+    """Write a share as a percentage with one decimal, and `more`."""
+    return f"{100 * share:.{1 + more}f} %"
 
 
 def chi_square_statistic(test: ChiSquare) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from ..errors import AnalysisError
-from ..wording import format_p
+from ..wording import decimals_of_interval, format_p
 from .drawn import Drawn
 from .style import COLOURS, FAINT, INK, Labels, panel
 from .text import SMALL_POINTS, TEXT_POINTS, in_sentence, wrapped
@@ -128,10 +128,15 @@ def _write(axes: Axes, y: int, lines: Sequence[str], *, bold: bool) -> None:
 def _estimate(result: TestResult, decimals: int) -> str:
     if result.estimate is None:
         return "not defined"
-    estimate = f"{result.estimate:z.{decimals}f}"
     if result.low is None or result.high is None:
-        return f"{estimate}, no interval"
-    return f"{estimate} [{result.low:z.{decimals}f}, {result.high:z.{decimals}f}]"
+        return f"{result.estimate:z.{decimals}f}, no interval"
+
+    def write(value: float, more: int = 0, /) -> str:
+        return f"{value:z.{decimals + more}f}"
+
+    more = decimals_of_interval(result.low, result.high, result.null, write)
+    low, high = write(result.low, more), write(result.high, more)
+    return f"{write(result.estimate, more)} [{low}, {high}]"
 
 
 def _p(result: TestResult, alpha: float) -> tuple[str, ...]:

@@ -12,7 +12,8 @@ from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import capital, format_alpha, format_p, percent
 from .document import Finding, Paragraph, Part
-from .effects import beyond, effect_of, estimate, interval, statement
+from .effects import beyond, decimals_beside, effect_of, estimate, interval, statement
+from .excluded import excluded
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,8 @@ def answers(
     findings = (
         Finding(
             f"{each.hypothesis}, {WORDS[each.measure].name}: {_verdict(each, arms, alpha)}",
-            f"{capital(means(comparisons[each.measure], arms))}. {_numbers(each, arms, alpha)}",
+            f"{capital(means(comparisons[each.measure], arms))}. "
+            + _numbers(each, comparisons[each.measure], arms, alpha),
         )
         for each in conclusions
     )
@@ -105,12 +107,13 @@ def _shown(measure: str, direction: Direction, arms: Arms) -> str:
     return f"{words.more if direction == 'more' else words.less} with {arms.treatment.label}"
 
 
-def _numbers(conclusion: Conclusion, arms: Arms, alpha: float) -> str:
+def _numbers(conclusion: Conclusion, compared: Comparison, arms: Arms, alpha: float) -> str:
     primary = conclusion.primary
     said = [_effect(conclusion, arms)]
     if conclusion.direction != "undefined":
         said.append(_tested(primary, conclusion.p_holm, alpha))
-    notes = [f"{capital(WARNINGS[code])}." for code in primary.warnings]
+    notes = excluded(conclusion, compared, arms)
+    notes += [f"{capital(WARNINGS[code])}." for code in primary.warnings]
     if outside := beyond(primary):
         notes.append(f"{capital(outside)}.")
     if beside := _beside(conclusion, arms, alpha):
@@ -130,7 +133,8 @@ def _effect(conclusion: Conclusion, arms: Arms) -> str:
         return "Effect not defined"
     bounds = "" if primary.low is None else f", 95 % interval {interval(primary)}"
     if primary.unit != "probability":
-        return f"Difference {effect_of(primary).with_unit(primary.estimate)}{bounds}"
+        difference = effect_of(primary).with_unit(primary.estimate, decimals_beside(primary))
+        return f"Difference {difference}{bounds}"
     words, auc = WORDS[conclusion.measure], primary.estimate
     more_often, share = (words.more, auc) if auc >= primary.null else (words.less, 1 - auc)
     return (

@@ -11,6 +11,7 @@ from ..results import Results
 from ..wording import capital, chi_square_apa, format_p, mann_whitney_apa
 from .answers import WORDS, means
 from .effects import bracketed, statement
+from .excluded import excluded
 
 
 def apa_sentences(results: Results) -> tuple[str, ...]:
@@ -55,12 +56,13 @@ def _primary(conclusion: Conclusion, evidence: Evidence, plan: Plan) -> str:
         if conclusion.p_holm is None
         else f", Holm-corrected {format_p(conclusion.p_holm, alpha=plan.alpha)}"
     )
-    return (
-        f"{capital(words)}: "
-        f"{means(evidence.comparisons[conclusion.measure], plan.arms)}, "
+    compared = evidence.comparisons[conclusion.measure]
+    said = (
+        f"{capital(words)}: {means(compared, plan.arms)}, "
         f"{bracketed(conclusion.primary)}, {tested}{corrected} "
         f"({_arms(plan.arms)}; trials clustered by participant and scenario)."
     )
+    return " ".join((said, *excluded(conclusion, compared, plan.arms)))
 
 
 def _arms(arms: Arms) -> str:

@@ -14,7 +14,7 @@ from ..evidence import Evidence
 from ..methods import INDEPENDENT, Comparison
 from ..results import Results
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Rises when a field is renamed, moved or changes its meaning."""
 
 
@@ -73,6 +73,7 @@ def _comparison(compared: Comparison) -> dict[str, Any]:
             for key, result in compared.results.items()
         },
         "left_out": compared.left_out,
+        "superiority": compared.superiority,
     }
 
 
@@ -88,6 +89,7 @@ def _conclusion(conclusion: Conclusion, evidence: Evidence) -> dict[str, Any]:
         "model_p_holm": conclusion.model_p_holm,
         "model_direction": conclusion.model_direction,
         "model_agrees": conclusion.models_agree,
+        "equivalence": conclusion.equivalence,
     }
 
 

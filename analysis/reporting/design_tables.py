@@ -11,7 +11,7 @@ from ..warning_texts import WARNINGS
 from ..wording import percent, without_zero
 from .answers import WORDS
 from .document import NOTHING, Grid, Heading, Items, Paragraph, Part, with_reason
-from .effects import beyond, bracketed, effect_of, interval, statement, statement_cell
+from .effects import beyond, bracketed, decimals_beside, interval, statement, statement_cell, value
 
 _UNDEFINED = "not defined with these data; a note below says why"
 
@@ -48,16 +48,18 @@ def likeness_parts(evidence: Evidence) -> list[Part]:
 
 def chance_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     """Return each arm's share of correct guesses against guessing blindly."""
+    # chance and all rows with as many decimals, so that they can be compared as printed
+    more = max(map(decimals_beside, evidence.chance))
     rows = tuple(
         (
             label,
-            percent(test.estimate) if test.estimate is not None else NOTHING,
-            interval(test),
+            NOTHING if test.estimate is None else percent(test.estimate, more),
+            interval(test, more=more),
             statement_cell(test, plan.alpha),
         )
         for label, test in zip(plan.arms.labels.values(), evidence.chance, strict=True)
     )
-    caption = f"Correct guesses against chance, {percent(plan.chance_level)}"
+    caption = f"Correct guesses against chance, {percent(plan.chance_level, more)}"
     header = ("", "correct", "95 % interval, %", "test")
     return [
         Heading("Against chance", 3),
@@ -97,7 +99,7 @@ def discrimination_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     rows = tuple(
         (
             label,
-            NOTHING if test.estimate is None else effect_of(test).write(test.estimate),
+            value(test),
             interval(test),
             statement_cell(test, plan.alpha),
             NOTHING if test.gamma is None else without_zero(test.gamma, 3),
@@ -121,10 +123,9 @@ def discrimination_parts(evidence: Evidence, plan: Plan) -> list[Part]:
 def _likeness_row(name: str, likeness: Likeness) -> tuple[str, ...]:
     correlation, tipping = likeness.correlation, likeness.tipping
     effect = NOTHING if likeness.design_effect is None else f"{likeness.design_effect:.2f}"
-    value = correlation.estimate
     return (
         name,
-        NOTHING if value is None else without_zero(value, 3),
+        value(correlation),
         interval(correlation),
         effect,
         NOTHING if tipping is None else _tipping_effect(tipping.design_effect_max),

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..statistics.result import TestResult
-from ..wording import format_p, without_zero
+from ..wording import Write, decimals_of_interval, format_p, without_zero
 from .document import NOTHING
 
 _LARGEST_LOG = 700.0
@@ -22,37 +21,47 @@ class Effect:
 
     name: str
     unit: str
-    write: Callable[[float], str]
+    write: Write
 
-    def in_words(self, value: float) -> str:
+    def in_words(self, value: float, more: int = 0) -> str:
         """Write a value as running text has it: odds ratio = 2.70, difference = 2.50 s."""
-        return f"{self.name} = {self.with_unit(value)}"
+        return f"{self.name} = {self.with_unit(value, more)}"
 
-    def in_cell(self, value: float) -> str:
+    def in_cell(self, value: float, more: int = 0) -> str:
         """Write a value as short as can be understood: odds ratio 2.70, 2.50 s."""
-        return self.with_unit(value) if self.unit else f"{self.name} {self.write(value)}"
+        return (
+            self.with_unit(value, more) if self.unit else f"{self.name} {self.write(value, more)}"
+        )
 
-    def with_unit(self, value: float) -> str:
-        """Write a value with its unit, if it has one."""
-        return f"{self.write(value)} {self.unit}".rstrip()
-
-
-def _ratio(value: float) -> str:
-    return f"{value:.3g}" if value >= _MANY_DIGITS else f"{value:.2f}"
+    def with_unit(self, value: float, more: int = 0) -> str:
+        """Write a value with its unit, if it has one; `more` decimals than usual."""
+        return f"{self.write(value, more)} {self.unit}".rstrip()
 
 
-def _ratio_of_log(value: float) -> str:
-    return _ratio(math.exp(min(value, _LARGEST_LOG)))
+def _percentage(value: float, more: int = 0) -> str:
+    return f"{100 * value:z.{1 + more}f}"
 
 
-def _coefficient(value: float) -> str:
-    return without_zero(value, 3)
+def _amount(value: float, more: int = 0) -> str:
+    return f"{value:z.{2 + more}f}"
+
+
+def _ratio(value: float, more: int = 0) -> str:
+    return f"{value:.3g}" if value >= _MANY_DIGITS else f"{value:.{2 + more}f}"
+
+
+def _ratio_of_log(value: float, more: int = 0) -> str:
+    return _ratio(math.exp(min(value, _LARGEST_LOG)), more)
+
+
+def _coefficient(value: float, more: int = 0) -> str:
+    return without_zero(value, 3 + more)
 
 
 EFFECTS = {
-    "share": Effect("difference", "percentage points", lambda value: f"{100 * value:z.1f}"),
-    "s": Effect("difference", "s", "{:z.2f}".format),
-    "scale points": Effect("difference", "scale points", "{:z.2f}".format),
+    "share": Effect("difference", "percentage points", _percentage),
+    "s": Effect("difference", "s", _amount),
+    "scale points": Effect("difference", "scale points", _amount),
     "probability": Effect("AUC", "", _coefficient),
     "phi": Effect("phi", "", _coefficient),
     "correlation": Effect("correlation", "", _coefficient),
@@ -69,25 +78,40 @@ def effect_of(result: TestResult) -> Effect:
     return EFFECTS[result.unit]
 
 
+def decimals_beside(result: TestResult) -> int:
+    """Return how many decimals more than usual the interval, and what stands beside it, need."""
+    return decimals_of_interval(result.low, result.high, result.null, effect_of(result).write)
+
+
+def value(result: TestResult, more: int | None = None) -> str:
+    """Write the estimate without name and unit, or a dash; `more` decimals if it is told."""
+    if result.estimate is None:
+        return NOTHING
+    more = decimals_beside(result) if more is None else more
+    return effect_of(result).write(result.estimate, more)
+
+
 def estimate(result: TestResult) -> str:
     """Write the estimate with its name: odds ratio = 2.70."""
     effect = effect_of(result)
     if result.estimate is None:
         return f"{effect.name} not defined"
-    return effect.in_words(result.estimate)
+    return effect.in_words(result.estimate, decimals_beside(result))
 
 
 def estimate_cell(result: TestResult) -> str:
     """Write the estimate for a table: odds ratio 2.70, or a dash."""
-    return NOTHING if result.estimate is None else effect_of(result).in_cell(result.estimate)
+    if result.estimate is None:
+        return NOTHING
+    return effect_of(result).in_cell(result.estimate, decimals_beside(result))
 
 
-def interval(result: TestResult) -> str:
-    """Write the bounds of the 95 % interval: 9.5 to 21.1, or a dash."""
+def interval(result: TestResult, between: str = " to ", more: int | None = None) -> str:
+    """Write the bounds of the 95 % interval: 9.5 to 21.1, or a dash; `more` decimals if told."""
     if result.low is None or result.high is None:
         return NOTHING
-    write = effect_of(result).write
-    return f"{write(result.low)} to {write(result.high)}"
+    more = decimals_beside(result) if more is None else more
+    return between.join(effect_of(result).write(each, more) for each in (result.low, result.high))
 
 
 def beyond(result: TestResult) -> str:
@@ -102,7 +126,8 @@ def beyond(result: TestResult) -> str:
         return ""
     if result.low is None or result.high is None:
         return ""
-    low, high = round(result.low, _PRINTED), round(result.high, _PRINTED)
+    decimals = _PRINTED + decimals_beside(result)
+    low, high = round(result.low, decimals), round(result.high, decimals)
     if least <= low <= high <= 1:
         return ""
     return f"the interval reaches outside {possible}, and is not cut"
@@ -129,8 +154,7 @@ def bracketed(result: TestResult) -> str:
     """Write estimate and interval as APA has them: AUC = .349, 95 % CI [.310, .388]."""
     if result.low is None or result.high is None:
         return estimate(result)
-    write = effect_of(result).write
-    return f"{estimate(result)}, 95 % CI [{write(result.low)}, {write(result.high)}]"
+    return f"{estimate(result)}, 95 % CI [{interval(result, ', ')}]"
 
 
 def _degrees(result: TestResult) -> str:

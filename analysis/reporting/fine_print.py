@@ -8,7 +8,9 @@ from ..dataset import Dataset
 from ..evidence import Evidence
 from ..mapping import TableMapping
 from ..plan import Plan
+from ..statistics.equivalence import Equivalence
 from ..statistics.result import TestResult
+from ..statistics.superiority import Superiority
 from ..statistics.survival import Incidence
 from .document import Heading, Items, Paragraph, Part
 from .method_tables import PRIMARY, method_names
@@ -28,8 +30,14 @@ _DEFINITIONS = (
     "models take those of the two-way test.",
     "Where the two-way test and the mixed model fall on different sides of alpha, the conclusion "
     "is drawn from the two-way test.",
-    "Intervals are at 95 %. Those of single arms in the paper's block are Wilson's for shares and "
-    "Student's t for means. Tests of normality describe the data and decide nothing.",
+    "What is excluded where no difference is shown is told by two one-sided tests on estimate, "
+    "standard error and degrees of freedom of the primary test, against the plan's smallest effect "
+    "of interest. Both must reject at alpha, so of one measure a false exclusion has at most that "
+    "chance. Holm's correction, which guards against a difference shown where there is none, is "
+    "not theirs: that any of several measures has a false one may be more probable.",
+    "Intervals are at 95 %, where nothing else is said. Those of single arms in the paper's block "
+    "are Wilson's for shares and Student's t for means. Tests of normality describe the data and "
+    "decide nothing.",
     "In the paper's block, chi-square is Pearson's without continuity correction; Mann-Whitney is "
     "two-sided and asymptotic, with tie correction and without continuity correction. The U "
     "printed first is the smaller of the two, as in the paper; the treatment's own U counts the "
@@ -80,7 +88,7 @@ def _pairs(pairs: Iterable[tuple[str, str]], between: str) -> str:
 
 def _sources(evidence: Evidence) -> tuple[str, ...]:
     """Say of every method that was run, once, how it was done and where that is from."""
-    run: list[tuple[str, TestResult | Incidence]] = [
+    run: list[tuple[str, TestResult | Incidence | Equivalence | Superiority]] = [
         (method_names(compared)[key].removesuffix(PRIMARY), result)
         for compared in evidence.comparisons.values()
         for key, result in compared.results.items()
@@ -92,6 +100,14 @@ def _sources(evidence: Evidence) -> tuple[str, ...]:
         ("Confidence, right against wrong", evidence.discrimination[0]),
         ("Likeness of trials", next(iter(evidence.likeness.values())).correlation),
         ("Who left", evidence.sensitivity.dropout),
+    ]
+    run += [
+        ("What is excluded", each.equivalence) for each in evidence.conclusions if each.equivalence
+    ]
+    run += [
+        ("Probability of a larger share", compared.superiority)
+        for compared in evidence.comparisons.values()
+        if compared.superiority
     ]
     told = (f"{name}: {result.method}. Source: {result.source}." for name, result in run)
     return tuple(dict.fromkeys(told))

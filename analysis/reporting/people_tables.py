@@ -11,7 +11,7 @@ from ..statistics.result import TestResult
 from ..wording import format_p
 from .answers import WORDS
 from .document import Grid, Heading, Paragraph, Part, with_reason
-from .effects import EFFECTS, estimate_cell, interval, statement_cell
+from .effects import EFFECTS, effect_of, estimate_cell, interval, statement_cell, value
 
 
 def sample_parts(sample: Sample, flow: Flow, arms: Arms) -> list[Part]:
@@ -65,12 +65,13 @@ def sensitivity_parts(evidence: Evidence, plan: Plan) -> list[Part]:
 
 def _who_left(evidence: Evidence, plan: Plan) -> str:
     left, arms = evidence.sensitivity.dropout, plan.arms
-    difference = "NA" if left.estimate is None else EFFECTS[left.unit].with_unit(left.estimate)
     return (
         f"Left: {left.left_treatment} of {left.participants_treatment} with "
         f"{arms.treatment.label}, {left.left_reference} of {left.participants_reference} with "
-        f"{arms.reference.label} ({evidence.sensitivity.counted}). Difference {difference}, "
-        f"95 % interval {interval(left)}, Fisher's exact {format_p(left.p, alpha=plan.alpha)}."
+        f"{arms.reference.label} ({evidence.sensitivity.counted}). Difference {value(left)} "
+        f"{effect_of(left).unit}, 95 % interval {interval(left)} by Newcombe's "
+        "method. Fisher's exact test, which is another "
+        f"than the interval's: {format_p(left.fisher_p, alpha=plan.alpha)}."
     )
 
 

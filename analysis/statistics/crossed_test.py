@@ -21,7 +21,11 @@ from .codes import (
     ZERO_VARIANCE,
 )
 from .crossed_fit import CrossedFit, CrossedModel
-from .degrees_of_freedom import by_participant_and_scenario, participants_of_arms
+from .degrees_of_freedom import (
+    by_participant_and_scenario,
+    known_scenarios,
+    participants_of_arms,
+)
 from .inference import FEW, Inference, student, undefined
 from .influence import cluster_count, of_auc
 from .outcome import Clusters, Outcome
@@ -66,7 +70,8 @@ def crossed_test(
     no fit, if all values are equal, if every value of one arm is at least every value of the other
     (`separation`), if there are more than 500 scenarios or if no maximum is found; no test with one
     scenario or one participant in an arm. A factor that trials cannot tell from others is left out.
-    Each of these adds a warning. EmptyArmError if an arm has no value.
+    Each of these adds a warning. Where no scenario is known, participants alone are random.
+    EmptyArmError if an arm has no value.
     """
     from scipy.special import chdtrc
     from threadpoolctl import threadpool_limits
@@ -114,17 +119,18 @@ def crossed_test(
 
 def _factors(data: Outcome, interaction: bool) -> tuple[Factors, tuple[str, ...]]:
     """Return participants, scenarios and scenarios in arms, None for what cannot be estimated."""
-    n, scenarios = len(data.y), cluster_count(data.scenario)
+    n, scenarios = len(data.y), known_scenarios(data)
+    people = data.participant if cluster_count(data.participant) < n else None
+    warnings = [] if people is not None else [SINGLE_TRIALS]
+    if not scenarios:
+        return (people, None, None), tuple(warnings)
     cells = np.unique(2 * data.scenario + data.treated, return_inverse=True)[1]
     shared = cluster_count(cells) > scenarios
-    warnings = []
-    if cluster_count(data.participant) == n:
-        warnings.append(SINGLE_TRIALS)
     if not shared:
         warnings.append(NO_SCENARIO_SHARED)
     in_arms = interaction and shared and scenarios > 1 and cluster_count(cells) < n
     factors = (
-        data.participant if cluster_count(data.participant) < n else None,
+        people,
         data.scenario if 1 < scenarios < n else None,
         cells if in_arms else None,
     )
@@ -138,19 +144,19 @@ def _obstacle(data: Outcome) -> str | None:
         return CONSTANT_OUTCOME
     if treatment.min() >= reference.max() or reference.min() >= treatment.max():
         return SEPARATION
-    if cluster_count(data.scenario) > _MOST_SCENARIOS:
+    if known_scenarios(data) > _MOST_SCENARIOS:
         return TOO_MANY_CLUSTERS
     return None
 
 
 def _inference(data: Outcome, fit: CrossedFit, warnings: tuple[str, ...]) -> Inference:
-    scenarios = cluster_count(data.scenario)
+    scenarios = known_scenarios(data)
     fewest = min(participants_of_arms(data))
     if fewest == 1:
         return undefined(fit.effect, 0.0, *warnings, ONE_PARTICIPANT)
     if scenarios == 1:
         return undefined(fit.effect, 0.0, *warnings, ONE_SCENARIO)
-    if min(fewest, scenarios) < FEW:
+    if min(fewest, scenarios or fewest) < FEW:
         warnings = (*warnings, FEW_CLUSTERS)
     df = by_participant_and_scenario(data, of_auc(data).h)
     return student(fit.effect, 0.0, float(fit.covariance[1, 1]), df, *warnings)

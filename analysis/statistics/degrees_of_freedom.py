@@ -17,6 +17,11 @@ def participants_of_arms(data: Outcome) -> list[int]:
     return [cluster_count(data.participant[arm]) for arm in arms if arm.any()]
 
 
+def known_scenarios(data: Outcome) -> int:
+    """Return how many scenarios the trials whose scenario is known come from."""
+    return cluster_count(data.scenario[data.scenario != UNKNOWN])
+
+
 def within_participants(data: Outcome) -> bool:
     """Tell whether somebody has trials in both arms."""
     return sum(participants_of_arms(data)) > cluster_count(data.participant)
@@ -46,5 +51,5 @@ def by_participant_and_scenario(data: Outcome, h: Numbers) -> float:
     The smaller of `by_participant` and scenarios less one; without a known scenario the former.
     """
     of_participants = by_participant(data, h)
-    scenarios = cluster_count(data.scenario[data.scenario != UNKNOWN])
+    scenarios = known_scenarios(data)
     return min(of_participants, scenarios - 1) if scenarios else of_participants

@@ -18,9 +18,11 @@ from .two_by_two import TwoByTwo, fisher_exact, risk_difference
 class Dropout(TestResult):
     """Difference of the shares who left, positive if more left in the treatment arm.
 
-    `left_*` of `participants_*` of each arm did not complete.
+    `left_*` of `participants_*` of each arm did not complete. `fisher_p` is of another test than
+    the interval, which may exclude 0 where Fisher's exact test does not reject it: it is no `p`.
     """
 
+    fisher_p: float
     left_treatment: int
     left_reference: int
     participants_treatment: int
@@ -31,8 +33,8 @@ def differential_dropout(treated: NDArray[np.bool_], completed: NDArray[np.bool_
     """Compare how many participants of each arm left; both arrays of shape (P,), one each.
 
     Whom to count (everybody dealt, or everybody who began) is the caller's choice. Newcombe's
-    interval, Fisher's exact p; p is 1 if nobody, or everybody, left. EmptyArmError if an arm has
-    no participant. Source: Newcombe (1998), method 10; Fisher (1935).
+    interval, and Fisher's exact p, 1 if nobody, or everybody, left. EmptyArmError if an arm has no
+    participant. Source: Newcombe (1998), method 10; Fisher (1935).
     """
     for arm, of_arm in (("treatment", treated), ("reference", ~treated)):
         if not of_arm.any():
@@ -43,20 +45,20 @@ def differential_dropout(treated: NDArray[np.bool_], completed: NDArray[np.bool_
         for stayed in (completed, ~completed)
     )
     table = TwoByTwo(left_treatment, stayed_treatment, left_reference, stayed_reference)
-    difference, exact = risk_difference(table), fisher_exact(table)
+    difference = risk_difference(table)
     return Dropout(
         estimate=difference.estimate,
         low=difference.low,
         high=difference.high,
         null=0.0,
         unit="share",
-        p=exact.p,
         n=table.n,
         n_missing=0,
         method="difference of the shares who left with Newcombe's interval, 95 %; "
         "Fisher's exact test, two-sided",
         source="Newcombe (1998), Statistics in Medicine 17, 873-890; scipy.stats.fisher_exact",
         of="participants",
+        fisher_p=fisher_exact(table).p,
         left_treatment=left_treatment,
         left_reference=left_reference,
         participants_treatment=left_treatment + stayed_treatment,

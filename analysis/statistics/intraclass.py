@@ -20,6 +20,8 @@ _ROUNDING = 1e-12
 class IntraclassCorrelation(TestResult):
     """Correlation of two trials of a participant within an arm; F tests whether it is 0.
 
+    p is two-sided, as the interval is.
+
     `trials_per_participant` is the number with which the design effect of a difference between
     the arms is 1 + (trials_per_participant - 1) estimate: in an arm of n trials the mean over
     trials (sum m^2 / n for participants of m), averaged over arms with weights 1 / n.
@@ -106,12 +108,12 @@ def _mean_squares(data: Outcome, df: tuple[int, int]) -> tuple[float, float, flo
 
 
 def _of_f(f: float, df: tuple[int, int], size: float) -> tuple[float, float, float]:
-    """Return p and Searle's interval."""
-    from scipy.special import fdtrc, fdtri
+    """Return p, two-sided as the interval is, and Searle's interval."""
+    from scipy.special import fdtr, fdtrc, fdtri
 
     upper, lower = (f / float(fdtri(*df, q)) for q in ((1 - LEVEL) / 2, (1 + LEVEL) / 2))
     low, high = ((ratio - 1) / (ratio + size - 1) for ratio in (lower, upper))
-    return float(fdtrc(*df, f)), low, high
+    return 2 * float(min(fdtr(*df, f), fdtrc(*df, f))), low, high
 
 
 def _warnings(df: tuple[int, int], within: float) -> tuple[str, ...]:

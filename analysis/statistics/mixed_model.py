@@ -8,13 +8,13 @@ statsmodels' BinomialBayesMixedGLM is a Bayesian approximation to another model.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .crossed_fit import CrossedFit
 from .crossed_test import CrossedResult, crossed_test
-from .outcome import Outcome
+from .outcome import UNKNOWN, Outcome
 
 _NODES = 64
 """Of the quadrature: exact to 1e-9 for standard deviations up to 3 on the logit scale."""
@@ -26,7 +26,7 @@ class CrossedLogistic(CrossedResult):
 
     `intercept`: log odds in the reference arm, of a participant and scenario with effects 0.
     `risk_difference`, from -1 to 1, with its 95 % interval: of the shares that the model expects in
-    the arms over all participants and scenarios.
+    the arms over all participants and scenarios. It excludes 0 if and only if the estimate's does.
     """
 
     intercept: float | None
@@ -41,23 +41,38 @@ def crossed_logistic(outcome: Outcome, interaction: bool = True) -> CrossedLogis
     `outcome.y` is 1 where correct, else 0; without `interaction` the last term is left out. Maximum
     likelihood by Laplace's approximation, as R's glmmTMB and lme4 (nAGQ = 1); standard error from
     the observed information of all parameters, as glmmTMB; t on the degrees of freedom of the
-    two-way difference. The interval of the risk difference is by the delta method. What cannot be
-    estimated: see crossed_test. Source: Breslow and Clayton (1993), Journal of the American
+    two-way difference. The interval of the risk difference is that of the log odds ratio, carried
+    through the model: one by the delta method could exclude 0 where the test does not. What cannot
+    be estimated: see crossed_test. Source: Breslow and Clayton (1993), Journal of the American
     Statistical Association 88, 9-25; Baayen, Davidson and Bates (2008), Journal of Memory and
     Language 59, 390-412.
     """
+    return _logistic(outcome, interaction, "Crossed logistic mixed model")
+
+
+def participant_logistic(outcome: Outcome) -> CrossedLogistic:
+    """Test the arm in correct ~ arm + (1 | participant): scenarios are left out of account.
+
+    It rejects too often where scenarios differ between the arms. `outcome.y` is 1 where correct,
+    else 0; all else is as in `crossed_logistic`, t on the participants' degrees of freedom.
+    """
+    without = replace(outcome, scenario=np.full_like(outcome.scenario, UNKNOWN))
+    return _logistic(without, False, "Logistic mixed model of participants only")
+
+
+def _logistic(outcome: Outcome, interaction: bool, method: str) -> CrossedLogistic:
     result, fit = crossed_test(
         outcome,
         interaction=interaction,
-        method="Crossed logistic mixed model",
+        method=method,
         source="Breslow and Clayton (1993); agrees with R glmmTMB",
     )
     difference = low = high = None
     if fit is not None:
-        difference, se = _risk_difference(fit)
-        if result.se and result.high is not None:
-            half = (result.high - fit.effect) / result.se * se
-            low, high = difference - half, difference + half
+        difference = _risk_difference(fit, fit.effect)
+        if result.low is not None and result.high is not None:
+            reached = [difference, *(_risk_difference(fit, at) for at in (result.low, result.high))]
+            low, high = min(reached), max(reached)
     return CrossedLogistic(
         **vars(result),
         intercept=None if fit is None else fit.location - fit.effect / 2,
@@ -67,22 +82,17 @@ def crossed_logistic(outcome: Outcome, interaction: bool = True) -> CrossedLogis
     )
 
 
-def _risk_difference(fit: CrossedFit) -> tuple[float, float]:
-    """Return the difference of the arms' expected shares, over random effects, and its error."""
+def _risk_difference(fit: CrossedFit, effect: float) -> float:
+    """Return the difference of the arms' expected shares, over random effects, at an effect.
+
+    Location and standard deviations are the most probable ones with it, by the curvature at the
+    maximum. Both arms share them, so the difference has the sign of the effect.
+    """
     from scipy.special import expit
 
     nodes, weights = np.polynomial.hermite_e.hermegauss(_NODES)
-    weights = weights / weights.sum()
-    sd = math.hypot(*fit.sds)
-    shares = expit(fit.location + np.array([[-0.5], [0.5]]) * fit.effect + sd * nodes)
-    density = shares * (1 - shares)
-    by_location = density @ weights
-    by_sd = density @ (weights * nodes)
-    gradient = np.concatenate(
-        [
-            [by_location[1] - by_location[0], by_location.mean()],
-            (by_sd[1] - by_sd[0]) * (fit.sds / sd if sd > 0 else fit.sds),
-        ]
-    )
-    reference, treatment = shares @ weights
-    return float(treatment - reference), float(gradient @ fit.covariance @ gradient) ** 0.5
+    moved = (effect - fit.effect) * fit.covariance[1] / fit.covariance[1, 1]
+    location, sd = fit.location + moved[0], math.hypot(*(fit.sds + moved[2:]))
+    shares = expit(location + np.array([[-0.5], [0.5]]) * effect + sd * nodes)
+    reference, treatment = shares @ (weights / weights.sum())
+    return float(treatment - reference)

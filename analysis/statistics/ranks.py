@@ -7,7 +7,7 @@ certainty, because trials of one participant, and trials of one scenario, resemb
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +23,18 @@ from .pairwise import Pairwise
 from .result import TestResult
 
 _EXACT_BELOW = 50
-"""Values per arm from which on R's wilcox.test approximates, too."""
+"""Values per arm from which on the normal approximation serves: R's wilcox.test has the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MannWhitney(TestResult):
-    """Two-sided asymptotic Mann-Whitney test with tie correction; the estimate is the AUC.
+    """Two-sided Mann-Whitney test; the estimate is the AUC.
 
     `u_treatment` counts the pairs in which the treatment arm's value is larger, ties half; the
     AUC is their share, `rank_biserial` = 2 AUC - 1. The statistic is z, None if all values are
-    equal; `sd` is U's under the null hypothesis. `p` is without, `p_continuity` with continuity
-    correction; `p_exact` also holds with ties, None if an arm has 50 values or more.
+    equal, and U where `p` is exact; `sd` is U's under the null hypothesis. An asymptotic `p` is
+    with tie correction and without, `p_continuity` with continuity correction; `p_exact` also holds
+    with ties, None if an arm has 50 values or more.
     """
 
     p: float
@@ -100,6 +101,30 @@ def mann_whitney(
     )
 
 
+def mann_whitney_exact_if_few(
+    treatment: Values, reference: Values, measure: str = "value", of: str = "trials"
+) -> MannWhitney:
+    """Test the same, exactly where each arm has fewer than 50 values and no two are equal.
+
+    `method` says which it was; the statistic of the exact test is the treatment's U. All else is as
+    in `mann_whitney`. Source: as R's wilcox.test, which chooses by the same rule.
+    """
+    from scipy import stats
+
+    test = mann_whitney(treatment, reference, measure, of)
+    x, y, _ = _present(treatment, reference, measure)
+    if not _is_small_and_untied(x, y):
+        return test
+    return replace(
+        test,
+        symbol="U",
+        statistic=test.u_treatment,
+        p=float(stats.mannwhitneyu(x, y, method="exact").pvalue),
+        method=f"Mann-Whitney, two-sided, exact, on {of}, few and without ties",
+        source='scipy.stats.mannwhitneyu(method="exact")',
+    )
+
+
 def brunner_munzel(
     treatment: Values, reference: Values, measure: str = "value", of: str = "trials"
 ) -> TestResult:
@@ -144,7 +169,7 @@ def hodges_lehmann(
     """
     x, y, n_missing = _present(treatment, reference, measure)
     differences, pairs = Pairwise.of(x, y), len(x) * len(y)
-    exact = _is_small(x, y) and len(np.unique(np.concatenate([x, y]))) == len(x) + len(y)
+    exact = _is_small_and_untied(x, y)
     first = _exact_rank(len(x), len(y)) if exact else _asymptotic_rank(x, y)
     warnings: tuple[str, ...] = () if np.ptp(np.concatenate([x, y])) else (CONSTANT_OUTCOME,)
     low = high = None
@@ -206,6 +231,10 @@ def _p_exact(x: Numbers, y: Numbers) -> float | None:
 
 def _is_small(x: Numbers, y: Numbers) -> bool:
     return max(len(x), len(y)) < _EXACT_BELOW
+
+
+def _is_small_and_untied(x: Numbers, y: Numbers) -> bool:
+    return _is_small(x, y) and len(np.unique(np.concatenate([x, y]))) == len(x) + len(y)
 
 
 def _exact_rank(n_x: int, n_y: int) -> int:

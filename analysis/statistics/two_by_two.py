@@ -84,6 +84,13 @@ class ChiSquare(TestResult):
 
 
 @dataclass(frozen=True, kw_only=True)
+class FisherExact(TestResult):
+    """Fisher's exact test; the estimate is the conditional odds ratio."""
+
+    p: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class OddsRatio(TestResult):
     """Odds of a correct guess in the treatment arm over those in the reference arm.
 
@@ -122,7 +129,7 @@ def g_test(table: TwoByTwo) -> ChiSquare:
     )
 
 
-def fisher_exact(table: TwoByTwo) -> TestResult:
+def fisher_exact(table: TwoByTwo) -> FisherExact:
     """Fisher's exact test, two-sided, with the conditional estimate of the odds ratio.
 
     The estimate is None where it would be infinite or undefined. It has no interval here: the
@@ -134,7 +141,7 @@ def fisher_exact(table: TwoByTwo) -> TestResult:
 
     table.require_both_arms()
     ratio = float(contingency.odds_ratio(table.counts, kind="conditional").statistic)
-    return TestResult(
+    return FisherExact(
         estimate=ratio if np.isfinite(ratio) else None,
         null=1.0,
         unit="odds ratio",
