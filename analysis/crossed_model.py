@@ -58,22 +58,36 @@ class Spread:
 
 @dataclass(frozen=True)
 class Design:
-    """Size of a study: participants (even, half in each arm), trials of each, scenarios."""
+    """Size of a study: participants of the treatment and the reference arm, trials of each.
 
-    participants: int
+    Where there are more trials than `scenarios`, everybody sees all of them before one again.
+    """
+
+    treatment: int
+    reference: int
     trials_each: int = 10
     scenarios: int = 37
 
     def __post_init__(self) -> None:
-        if self.participants < 2 or self.participants % 2:
-            raise AnalysisError(
-                f"participants: expected an even number from 2, got {self.participants}"
-            )
-        if not 1 <= self.trials_each <= self.scenarios:
-            raise AnalysisError(
-                f"trials per participant: expected 1 to {self.scenarios}, as many as there are "
-                f"scenarios, got {self.trials_each}"
-            )
+        for what, size in (
+            ("participants in an arm", min(self.treatment, self.reference)),
+            ("trials per participant", self.trials_each),
+            ("scenarios", self.scenarios),
+        ):
+            if size < 1:
+                raise AnalysisError(f"{what}: expected at least 1, got {size}")
+
+    @property
+    def participants(self) -> int:
+        """Of both arms together."""
+        return self.treatment + self.reference
+
+
+def halves(participants: int, trials_each: int = 10, scenarios: int = 37) -> Design:
+    """Return the design with half of the participants in each arm; AnalysisError if odd."""
+    if participants < 2 or participants % 2:
+        raise AnalysisError(f"participants: expected an even number from 2, got {participants}")
+    return Design(participants // 2, participants // 2, trials_each, scenarios)
 
 
 @dataclass(frozen=True)
@@ -123,10 +137,11 @@ def confidence_model(spread: Spread, auc: float = CONFIDENCE_AUC) -> CrossedMode
 
 def simulate(model: CrossedModel, design: Design, rng: np.random.Generator) -> Outcome:
     """Draw all trials of one study, participants of the treatment arm first."""
-    half, spread = design.participants // 2, model.spread
+    spread = model.spread
     participant = np.repeat(np.arange(design.participants), design.trials_each)
-    treated = participant < half
-    scenario = np.concatenate([_dealt(design, half, rng) for _ in range(2)]).ravel()
+    treated = participant < design.treatment
+    arms = (design.treatment, design.reference)
+    scenario = np.concatenate([_dealt(design, size, rng) for size in arms]).ravel()
     latent = (
         model.shift * treated
         + rng.normal(0, spread.participant, design.participants)[participant]
@@ -150,14 +165,17 @@ def simulate(model: CrossedModel, design: Design, rng: np.random.Generator) -> O
 def _dealt(design: Design, participants: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Deal an arm's scenarios, (participants, trials): none is ever ahead by more than one.
 
-    Everybody gets those used least so far, ties broken at random, as in the study.
+    Everybody gets those used least so far, ties broken at random, as in the study; after all of
+    them once where trials are enough, twice, and so on, in an order that no answer depends on.
     """
+    rounds, more = divmod(design.trials_each, design.scenarios)
     uses = np.zeros(design.scenarios)
-    lists = np.empty((participants, design.trials_each), dtype=np.int64)
-    for own, lot in zip(lists, rng.random((participants, design.scenarios)), strict=True):
-        own[:] = np.argsort(uses + lot)[: design.trials_each]
+    last = np.empty((participants, more), dtype=np.int64)
+    for own, lot in zip(last, rng.random((participants, design.scenarios)), strict=True):
+        own[:] = np.argsort(uses + lot)[:more]
         uses[own] += 1
-    return lists
+    whole = np.tile(np.arange(design.scenarios), (participants, rounds))
+    return np.concatenate([whole, last], axis=1)
 
 
 def _share_above(threshold: NDArray[np.float64] | float, sd: float) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import chain
 from math import ceil
 
-from .crossed_model import CrossedModel, Design
+from .crossed_model import CrossedModel, Design, halves
 from .power_curve import PowerCurve, fit_power
 from .simulated_studies import Rejections, Tell, rejections
 
@@ -107,7 +107,7 @@ def power_at(
     question: PowerQuestion, participants: Iterable[int], workers: int, tell: Tell
 ) -> Power:
     """Simulate the power with given numbers of participants; AnalysisError if one is odd."""
-    designs = [Design(n, question.trials_each, question.scenarios) for n in sorted({*participants})]
+    designs = [halves(n, question.trials_each, question.scenarios) for n in sorted({*participants})]
     points = [_simulated(question, design, question.studies, workers, tell) for design in designs]
     return Power(question, tuple(chain.from_iterable(points)))
 
@@ -121,7 +121,7 @@ def search_power(question: PowerQuestion, workers: int, tell: Tell) -> Power:
     found: dict[int, tuple[PowerPoint, ...]] = {}
 
     def simulate(participants: int, studies: int) -> None:
-        design = Design(participants, question.trials_each, question.scenarios)
+        design = halves(participants, question.trials_each, question.scenarios)
         found[participants] = _simulated(question, design, studies, workers, tell)
 
     def power() -> Power:

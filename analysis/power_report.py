@@ -13,7 +13,7 @@ from .files import folder_for_writing, replacing
 from .power import UNCORRECTED, Power
 from .simulated_studies import ALPHA
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Of power.json: rises when a field is renamed, moved or changes its meaning."""
 
 _PACKAGES = ("goalguess", "numpy", "scipy", "statsmodels")

@@ -16,6 +16,7 @@ from .statistics.clustered import two_way_auc, two_way_difference
 from .statistics.estimates import Share, share
 from .statistics.gee import gee_logistic
 from .statistics.mixed_model import crossed_logistic
+from .statistics.ordinal_mixed import crossed_ordinal
 from .statistics.outcome import Outcome
 from .statistics.ranks import mann_whitney
 from .statistics.result import TestResult
@@ -48,13 +49,19 @@ TESTS: Mapping[str, Mapping[str, Test]] = {
         "gee_logistic": gee_logistic,
         "crossed_logistic": crossed_logistic,
         "two_way_difference": two_way_difference,
+        "two_way_auc_of_correct": two_way_auc,
     },
     "confidence": {
         "mann_whitney": _mann_whitney_on_trials,
+        "crossed_ordinal": crossed_ordinal,
         "two_way_auc": two_way_auc,
+        "two_way_difference_of_confidence": two_way_difference,
     },
 }
-"""Tests by the measure they are of, as the report runs them."""
+"""Tests by the measure they are of, as the report runs them; every primary test of a plan is there.
+
+Those that say of what they are have the plain name on the other measure.
+"""
 
 
 def by_measure(tests: Sequence[str]) -> dict[str, tuple[str, ...]]:

@@ -34,6 +34,23 @@ def read_names(option: str, text: str, known: Collection[str]) -> tuple[str, ...
     return names
 
 
+def read_arms(text: str) -> tuple[int, int]:
+    """Read N, participants of both arms together, or N/M, those of each arm."""
+    try:
+        sizes = tuple(map(int, text.split("/")))
+    except ValueError:
+        sizes = ()
+    match sizes:
+        case (both,) if both % 2 == 0:
+            return both // 2, both // 2
+        case (treatment, reference):
+            return treatment, reference
+    raise AnalysisError(
+        "--participants: expected an even number of both arms together, or N/M in each, as 8/32, "
+        f"got {text!r}"
+    )
+
+
 def read_sizes(text: str) -> tuple[int, ...]:
     """Read numbers of participants with commas between."""
     try:

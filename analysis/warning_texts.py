@@ -12,6 +12,8 @@ WARNINGS = {
     codes.NOT_CONVERGED: "the fit did not converge, so nothing is estimated",
     codes.NO_OVERLAP: "the arms do not overlap at all, so the variance of the AUC is 0; the mean "
     "difference and the permutation of participants tell more",
+    codes.NO_SCENARIO_KNOWN: "no scenario is known, so only participants are taken as drawn from "
+    "many",
     codes.NO_SCENARIO_SHARED: "every scenario was seen in one arm only, so how scenarios differ "
     "cannot be told from the condition",
     codes.NO_VARIATION: "participants do not differ, so there is no standard error",

@@ -1,7 +1,8 @@
-"""Compiled loops over the cells of a maze; only functions that need them import this file.
+"""Compiled loops for distances in a maze and what follows from them: Q* and legible rewards.
 
-`after[x, a]` is the cell that action a leads to when it does not fail. The first four actions
-are up, down, left, right, so that `a ^ 1` leads back to where `a` came from.
+`after[x, a]` is the cell that action a leads to when it does not fail; the first four actions are
+the moves. Cells and places in tables are unsigned where they index: numba then leaves out the
+question whether an index counts from the end, a third of the time.
 """
 
 import math
@@ -15,46 +16,107 @@ from policies.mdp import Array
 Integers = NDArray[np.integer]
 
 MOVES = 4
-ROUNDING = 8 * np.finfo(float).eps
-"""Relative gain up to which a value is as good as floating point makes it."""
+LARGEST_EXPONENT = 600.0
+"""Up to this, exp(beta Q) keeps its full precision; beyond, posteriors stay in log space."""
 
 
 @njit(cache=True, nogil=True)
-def breadth_first(after: Integers, goal: int, d: Integers) -> int:
-    """Write the fewest moves to the goal into `d`, -1 where no way leads; the cells reached."""
-    queue = np.empty(len(d) + 1, np.int32)
+def breadth_first(after: Integers, start: int, d: Integers, order: Integers) -> int:
+    """Write the fewest moves to `start` into `d`, -1 where no way leads; the cells reached.
+
+    `order`, of one entry more than there are cells, gets those cells, the nearest first.
+    """
     d[:] = -1
-    d[goal] = 0
-    queue[0] = goal
+    d[start] = 0
+    order[0] = start
     first, last = 0, 1
     while first < last:
-        x = queue[first]
+        x = np.uint32(order[first])
         farther = d[x] + 1
         first += 1
         for a in range(MOVES):
             # Without a branch: whether a cell is new cannot be predicted, and guesses cost more.
-            y = after[x, a]
+            y = np.uint32(after[x, a])
             new = d[y] < 0
             d[y] = farther if new else d[y]
-            queue[last] = y
+            order[np.uint32(last)] = y
             last += new
     return last
 
 
 @njit(cache=True, nogil=True)
-def gather(after: Integers, d: Integers, table: Array, into: Array) -> None:
-    """Fill `into[n, x, a]` from `table[n, k, m]`: distance k; m = 0, 1, 2: nearer, equal, farther.
+def moves_only(after: Integers) -> Integers:
+    """Where moves lead, (S, 4), in a third of the memory: in large mazes that is half the time."""
+    return after[:, :MOVES].astype(np.int32)
+
+
+@njit(cache=True, nogil=True)
+def fill_distances(after: Integers, goals: Integers, d: Integers) -> int:
+    """Write the fewest moves to goal n into `d[n, x]`; the least number of cells that reach one."""
+    moves, order = moves_only(after), np.empty(len(after) + 1, np.int32)
+    least = len(after)
+    for n in range(len(goals)):
+        least = min(least, breadth_first(moves, goals[n], d[n], order))
+    return least
+
+
+@njit(cache=True, nogil=True)
+def place(k: int, onwards: int) -> int:
+    """Where a table keeps what a move from distance k to `onwards` has: 3 places for each k."""
+    return 3 * (k + 1) + (onwards - k + 1)
+
+
+@njit(cache=True, nogil=True)
+def value_tables(farthest: int, gamma: float, failure: float) -> tuple[Array, Array]:
+    """V* and Q* by distance, of goals where the robot cannot stay (s = 0) and where it can (s = 1).
+
+    `v[s, k]` for distance k, `q[s, place(k, l)]` for a move from k to l = k - 1, k or k + 1. What
+    no state has (at the goal, a move that comes nearer) holds some finite value; where no way
+    leads, k = l = -1, the value is 0.
+    """
+    kappa = (1 - failure) * gamma / (1 - failure * gamma)
+    loops = gamma * (failure + (1 - failure) * kappa), gamma
+    v, q = np.empty((2, farthest + 2)), np.zeros((2, place(farthest + 1, farthest)))
+    for k in range(farthest + 2):
+        power = math.pow(kappa, k)
+        for s in range(2):
+            v[s, k] = power / (1 - loops[s])
+    for s in range(2):
+        for k in range(farthest + 1):
+            r = 1.0 if k == 0 else 0.0
+            for onwards in range(k - 1, k + 2):
+                later = failure * v[s, k] + (1 - failure) * v[s, max(onwards, 0)]
+                q[s, place(k, onwards)] = r + gamma * later
+    return v, q
+
+
+@njit(cache=True, nogil=True)
+def can_stay(after: Integers, goals: Integers) -> Integers:
+    """1 for a goal where some action leaves the robot (no-op, or a wall to run into), else 0."""
+    s = np.zeros(len(goals), np.int8)
+    for n in range(len(goals)):
+        for a in range(after.shape[1]):
+            if after[goals[n], a] == goals[n]:
+                s[n] = 1
+    return s
+
+
+@njit(cache=True, nogil=True)
+def gather(after: Integers, d: Integers, s: Integers, table: Array, into: Array) -> None:
+    """Fill `into[n, x, a]` from `table[s[n], place(k, l)]`, k and l the distances before and after.
 
     A move changes the distance by at most 1, so an action has one of three values per distance.
     """
     N, S, A = into.shape
     for n in range(N):
-        of_goal, filled = d[n], into[n]
+        of_goal, values, filled = d[n], table[s[n]], into[n]
         for x in range(S):
             k = of_goal[x]
-            values = table[n, k]
-            for a in range(A):
-                filled[x, a] = values[of_goal[after[x, a]] - k + 1]
+            for a in range(MOVES):
+                onwards = of_goal[np.uint32(after[x, a])]
+                filled[x, a] = values[np.uint32(place(k, onwards))]
+            for a in range(MOVES, A):
+                filled[x, a] = values[np.uint32(place(k, k))]
 
 
 @njit(cache=True, nogil=True)
@@ -115,184 +177,48 @@ def exp_over_goals(w: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
-def entering(after: Integers, r: Array, scale: float) -> Array:
-    """What entering x from its neighbour on side a earns, times `scale`: (S, 4); -inf at walls."""
-    S = len(r)
-    c = np.empty((S, MOVES))
-    for x in range(S):
-        for a in range(MOVES):
-            y = after[x, a]
-            c[x, a] = scale * r[y, a ^ 1] if y != x else -math.inf
-    return c
-
-
-@njit(cache=True, nogil=True)
-def start_values(after: Integers, r: Array, c: Array, scale: float, leak: float) -> Array:
-    """The best of staying for ever and of going to and fro between two cells for ever, (S,)."""
-    S, A = r.shape
-    v = np.empty(S)
-    for x in range(S):
-        best = -math.inf
-        for a in range(A):
-            if after[x, a] == x:
-                best = max(best, scale * r[x, a] / leak)
-        for a in range(MOVES):
-            y = after[x, a]
-            if y != x:
-                there_and_back = c[y, a ^ 1] + (1 - leak) * c[x, a]
-                best = max(best, there_and_back / (leak * (2 - leak)))
-        v[x] = best
-    return v
-
-
-@njit(cache=True, nogil=True)
-def sources(after: Integers, c: Array, leak: float, v: Array, into: Integers) -> int:
-    """Collect the cells that raise a neighbour's value and that no neighbour raises; their count.
-
-    Whatever else is too low will be raised, and looked at, in consequence of these.
-    """
-    count = 0
-    for x in range(len(v)):
-        raises, raised = False, False
-        for a in range(MOVES):
-            y = after[x, a]
-            if y != x:
-                raised |= v[y] + (c[y, a ^ 1] - leak * v[y]) > v[x]
-                raises |= v[x] + (c[x, a] - leak * v[x]) > v[y]
-        if raises and not raised:
-            into[count] = x
-            count += 1
-    return count
-
-
-@njit(cache=True, nogil=True)
-def rise(heap: Integers, key: Array, place: Integers, i: int, x: int, v: float) -> None:
-    """Put x with key v at place i of a 4-ary heap, or further up where it belongs."""
-    while i > 0:
-        above = (i - 1) >> 2
-        if key[above] >= v:
-            break
-        heap[i], key[i] = heap[above], key[above]
-        place[heap[i]] = i
-        i = above
-    heap[i], key[i], place[x] = x, v, i
-
-
-@njit(cache=True, nogil=True)
-def sink(heap: Integers, key: Array, place: Integers, size: int) -> None:
-    """Move the heap's last entry, at `size`, to the top and from there down to where it belongs."""
-    x, v, i = heap[size], key[size], 0
-    while 4 * i + 1 < size:
-        largest = 4 * i + 1
-        for below in range(largest + 1, min(largest + 4, size)):
-            if key[below] > key[largest]:
-                largest = below
-        if key[largest] <= v:
-            break
-        heap[i], key[i] = heap[largest], key[largest]
-        place[heap[i]] = i
-        i = largest
-    heap[i], key[i], place[x] = x, v, i
-
-
-@njit(cache=True, nogil=True)
-def best_first(step: Integers, c: Array, leak: float, v: Array, first: Integers, most: int) -> int:
-    """Raise values to c[x, a] + (1 - leak) v(x), the highest x first; returns the cells taken up.
-
-    `first` are the cells to begin with, in falling order; cells that are raised wait in a heap.
-    `step[a]` is what action a adds to x where no wall stands. As a rule each cell is final when it
-    is taken up (Dijkstra's label setting); where the order was wrong it is taken up again, `most`
-    times in all. Whoever calls checks the residual.
-    """
-    S = len(v)
-    heap, key = np.empty(S, np.int32), np.empty(S)
-    place = np.full(S, -1, np.int32)
-    size, begun, taken = 0, 0, 0
-    while (size > 0 or begun < len(first)) and taken < most:
-        taken += 1
-        if size == 0 or (begun < len(first) and v[first[begun]] >= key[0]):
-            x = first[begun]
-            begun += 1
-        else:
-            x = heap[0]
-            place[x] = -1
-            size -= 1
-            if size > 0:
-                sink(heap, key, place, size)
-        for a in range(MOVES):
-            if c[x, a] == -math.inf:
-                continue
-            y = x + step[a]
-            # Adding the difference keeps equal values exactly equal where all rewards are.
-            raised = v[x] + (c[x, a] - leak * v[x])
-            if raised > v[y]:
-                v[y] = raised
-                if place[y] < 0:
-                    place[y] = size
-                    size += 1
-                rise(heap, key, place, place[y], y, raised)
-    return taken
-
-
-@njit(cache=True, nogil=True)
-def improve(
-    after: Integers, r: Array, scale: float, leak: float, v: Array, best: Integers
-) -> tuple[float, bool]:
-    """Write each cell's best action; largest Bellman residual, and whether more than rounding."""
-    S, A = r.shape
-    residual, more = 0.0, False
-    for x in range(S):
-        gain = -math.inf
-        for a in range(A):
-            y = after[x, a]
-            if y == x:
-                new = scale * r[x, a] / leak - v[x]
-            else:
-                new = (scale * r[x, a] - leak * v[y]) + (v[y] - v[x])
-            if new > gain:
-                gain, best[x] = new, a
-        residual = max(residual, abs(gain))
-        more |= gain > ROUNDING * abs(v[x])
-    return residual, more
-
-
-@njit(cache=True, nogil=True)
-def evaluate_choice(
-    after: Integers, r: Array, scale: float, leak: float, choice: Integers, v: Array
+def fill_goal_values(
+    after: Integers, goals: Integers, d: Integers, gamma: float, failure: float, q: Array
 ) -> None:
-    """Write the exact value of always taking `choice[x]` into `v`.
-
-    Each cell has one way on, so every way ends in a cycle (of one cell, if the robot stays there),
-    whose value is a geometric series; the values of all that leads there follow backwards.
-    """
-    S = len(v)
-    seen = np.full(S, -1, np.int32)
-    way = np.empty(S, np.int32)
-    for start in range(S):
-        x, length = start, 0
-        while seen[x] < 0:
-            seen[x] = start
-            way[length] = x
-            length += 1
-            x = after[x, choice[x]]
-        if length > 0 and seen[x] == start:
-            total, weights, weight, y = 0.0, 0.0, 1.0, x
-            while weights == 0 or y != x:
-                total += weight * scale * r[y, choice[y]]
-                weights += weight
-                weight *= 1 - leak
-                y = after[y, choice[y]]
-            v[x] = total / (leak * weights)
-        for i in range(length - 1, -1, -1):
-            y = way[i]
-            z = after[y, choice[y]]
-            v[y] = v[z] + (scale * r[y, choice[y]] - leak * v[z])
+    """Write Q*_n into `q[n, x, a]`."""
+    table = value_tables(d.max(), gamma, failure)[1]
+    gather(after, d, can_stay(after, goals), table, q)
 
 
 @njit(cache=True, nogil=True)
-def back_up(after: Integers, r: Array, gamma: float, failure: float, v: Array, q: Array) -> None:
-    """Write the action values q[x, a] = r[x, a] + gamma E[v(x')] of values v."""
-    S, A = r.shape
-    for x in range(S):
-        for a in range(A):
-            q[x, a] = r[x, a] + gamma * (failure * v[x] + (1 - failure) * v[after[x, a]])
+def fill_rewards(
+    after: Integers,
+    goals: Integers,
+    d: Integers,
+    gamma: float,
+    failure: float,
+    beta: float,
+    less_v: bool,
+    by_action: bool,
+    q: Array,
+    r_leg: Array,
+) -> None:
+    """Write Q*_n into `q[n, x, a]` and the posterior of goal n into `r_leg[n, x, a]`.
+
+    Goals weigh exp(beta Q_n), or exp(beta (Q_n - V_n)) if `less_v`; `by_action` first divides
+    each goal's weights by their sum over actions.
+    """
+    s = can_stay(after, goals)
+    v, table = value_tables(d.max(), gamma, failure)
+    gather(after, d, s, table, q)
+    weights = beta * (table - table.max())
+    if less_v:
+        for i in range(table.size // 2):
+            k = i // 3 - 1
+            for j in range(2):
+                weights[j, i] = beta * (table[j, i] - v[j, k]) if k >= 0 else 0.0
+    if weights.min() < -LARGEST_EXPONENT or weights.max() > LARGEST_EXPONENT:
+        gather(after, d, s, weights, r_leg)
+        if by_action:
+            log_over_actions(r_leg)
+        exp_over_goals(r_leg)
+    else:
+        gather(after, d, s, np.exp(weights), r_leg)
+        if by_action:
+            over_actions(r_leg)
+        over_goals(r_leg)

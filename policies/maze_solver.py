@@ -11,23 +11,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from policies.errors import ModelError
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import Array
-from policies.solvers import cells_after, distances, gathered, value_tables
+from policies.solvers import cells_after, check_discount, distances, goal_states
 
 Variant = Literal["as_printed", "proper_posterior", "advantage"]
-
-LARGEST_EXPONENT = 600.0
-"""Up to this, exp(beta Q) keeps its full precision; beyond, posteriors stay in log space."""
-
-MOST_TAKEN = 4
-"""Cells are taken up once each as a rule; beyond so many times, exact evaluation is faster."""
-
-ROUNDS = 100
-"""Policy iteration ends after a few; rounding must not keep it going."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,51 +40,31 @@ def maze_rewards(
 
     The same as `goal_values` and `legible_rewards`, from one table per distance.
     """
-    from policies import maze_kernels as kernels
+    from policies.maze_kernels import fill_rewards
 
+    check_discount(gamma)
     d, after = distances(maze), cells_after(maze, actions)
-    v, q = value_tables(maze, d, gamma, actions)
-    log_w = beta * (q - (q.max() if variant == "as_printed" else v[:, :, None]))
-    in_log_space = log_w.min() < -LARGEST_EXPONENT or log_w.max() > LARGEST_EXPONENT
-    r_leg = gathered(after, d, log_w if in_log_space else np.exp(log_w))
-    if variant == "proper_posterior":
-        (kernels.log_over_actions if in_log_space else kernels.over_actions)(r_leg)
-    (kernels.exp_over_goals if in_log_space else kernels.over_goals)(r_leg)
-    return gathered(after, d, q), r_leg
+    # One block of memory: two are handed back to the system and fetched anew every time.
+    q, r_leg = np.empty((2, len(d), *after.shape))
+    less_v, by_action = variant != "as_printed", variant == "proper_posterior"
+    fill_rewards(after, goal_states(maze), d, gamma, FAILURE, beta, less_v, by_action, q, r_leg)
+    return q, r_leg
 
 
 def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) -> MazeSolution:
     """Optimal values of a maze with rewards `r[x, a]`, (S, A), and no end: exact, with its bound.
 
-    Values spread best first from cells where the robot stays, or goes to and fro between two, as
-    Dijkstra's algorithm spreads distances. Where longer cycles pay the residual shows it: there
-    the greedy policy is evaluated exactly, as in policy iteration (Howard, 1960), and values
-    spread again from what it is worth.
+    ModelError when a reward is not finite or gamma is outside [0, 1).
     """
-    from policies import maze_kernels as kernels
+    from policies.value_kernels import optimise
 
-    if not 0 <= gamma < 1:
-        raise ModelError(f"expected gamma in [0, 1), came {gamma}")
+    check_discount(gamma)
     after = cells_after(maze, actions)
     if r.shape != after.shape or not np.isfinite(r).all():
         raise ModelError(f"expected finite rewards of shape {after.shape}, came {r.shape}")
-    scale = 1 / (1 - FAILURE * gamma)
-    leak = scale * (1 - gamma)
-    c = kernels.entering(after, r, scale)
-    v = kernels.start_values(after, r, c, scale, leak)
-    best = np.empty(maze.states, np.int8)
-    cells = np.empty(maze.states, np.int32)
-    for _ in range(ROUNDS):
-        first = cells[: kernels.sources(after, c, leak, v, cells)]
-        first = first[np.argsort(-v[first])]
-        kernels.best_first(_steps(maze), c, leak, v, first, MOST_TAKEN * maze.states)
-        residual, more = kernels.improve(after, r, scale, leak, v, best)
-        if not more:
-            break
-        kernels.evaluate_choice(after, r, scale, leak, best, v)
-    q = np.empty_like(r)
-    kernels.back_up(after, r, gamma, FAILURE, v, q)
-    return MazeSolution(v, q, residual / leak)
+    v, q = np.empty(maze.states), np.empty(r.shape)
+    bound = optimise(after, r, gamma, FAILURE, v, q)
+    return MazeSolution(v, q, bound)
 
 
 def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) -> Array:
@@ -103,16 +73,8 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     Folding a failed action's self-loop leaves a graph with edges cost / .85, where taking up
     cells best first is Dijkstra's algorithm.
     """
-    from policies import maze_kernels as kernels
+    from policies import value_kernels
 
-    c = kernels.entering(cells_after(maze, actions), cost, -1 / (1 - FAILURE))
-    v = np.full(maze.states, -np.inf)
-    v[goal] = 0
-    kernels.best_first(_steps(maze), c, 0.0, v, np.array([goal]), maze.states)
-    least: Array = np.abs(v)
+    least = np.empty(maze.states)
+    value_kernels.least_cost(cells_after(maze, actions), cost, FAILURE, goal, least)
     return least
-
-
-def _steps(maze: Maze) -> NDArray[np.int64]:
-    """What up, down, left and right add to a state where no wall stands."""
-    return np.array([-maze.cols, maze.cols, -1, 1])

@@ -71,19 +71,24 @@ def ties(q: Array) -> NDArray[np.bool_]:
 
 def distances(maze: Maze) -> NDArray[np.int32]:
     """Fewest moves from every state to every goal, shape (N, S); MazeError where no way leads."""
-    return np.stack([distances_to(maze, goal) for goal in maze.goals.values()])
+    return _distances(maze, goal_states(maze))
 
 
 def distances_to(maze: Maze, goal: int) -> NDArray[np.int32]:
     """Fewest moves from every state to one, shape (S,); MazeError where no way leads."""
-    from policies.maze_kernels import breadth_first
+    d: NDArray[np.int32] = _distances(maze, np.array([goal]))[0]
+    return d
 
-    d = np.empty(maze.states, np.int32)
-    if breadth_first(maze.successors, goal, d) < maze.states:
-        found = maze.cell(int(d.argmin()))
+
+def _distances(maze: Maze, goals: NDArray[np.int64]) -> NDArray[np.int32]:
+    from policies.maze_kernels import fill_distances
+
+    d = np.empty((len(goals), maze.states), np.int32)
+    if fill_distances(maze.successors, goals, d) < maze.states:
+        n, x = divmod(int(d.argmin()), maze.states)
         raise MazeError(
-            f"expected cell {maze.cell(goal)} to be reachable from every cell, "
-            f"found no way from {found} (row, column)"
+            f"expected cell {maze.cell(int(goals[n]))} to be reachable from every cell, "
+            f"found no way from {maze.cell(x)} (row, column)"
         )
     return d
 
@@ -95,43 +100,29 @@ def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
     goal and kappa = .85 gamma / (1 - .15 gamma), V_n(x) = kappa^d V_n(goal); V_n(goal) is
     1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into).
     """
-    d = distances(maze)
-    return gathered(cells_after(maze, actions), d, value_tables(maze, d, gamma, actions)[1])
+    from policies.maze_kernels import fill_goal_values
+
+    check_discount(gamma)
+    d, after = distances(maze), cells_after(maze, actions)
+    q = np.empty((len(d), *after.shape))
+    fill_goal_values(after, goal_states(maze), d, gamma, FAILURE, q)
+    return q
 
 
-def value_tables(
-    maze: Maze, d: NDArray[np.int32], gamma: float, actions: Sequence[Action]
-) -> tuple[Array, Array]:
-    """V_n and Q*_n by distance k: `v[n, k]`, and `q[n, k, m]` for moves to k - 1, k and k + 1.
-
-    What no state has (at the goal, a move that comes nearer) holds some finite value.
-    """
+def check_discount(gamma: float) -> None:
+    """ModelError unless gamma is in [0, 1)."""
     if not 0 <= gamma < 1:
         raise ModelError(f"expected gamma in [0, 1), came {gamma}")
-    kappa = (1 - FAILURE) * gamma / (1 - FAILURE * gamma)
-    goals = np.array(list(maze.goals.values()))
-    can_stay = (maze.successors[goals][:, list(actions)] == goals[:, None]).any(axis=1)
-    loop = np.where(can_stay, gamma, gamma * (FAILURE + (1 - FAILURE) * kappa))
-    power = kappa ** np.maximum(np.arange(-1, d.max() + 2), 0)
-    v = power / (1 - loop)[:, None]
-    onwards = np.stack([v[:, :-2], v[:, 1:-1], v[:, 2:]], axis=2)
-    q = gamma * (FAILURE * v[:, 1:-1, None] + (1 - FAILURE) * onwards)
-    q[:, 0] += 1
-    return v[:, 1:-1], q
 
 
-def gathered(after: NDArray[np.int64], d: NDArray[np.int32], table: Array) -> Array:
-    """The entries of a table by distance (N, D + 1, 3) for every goal, state and action."""
-    from policies.maze_kernels import gather
-
-    into = np.empty((len(d), *after.shape))
-    gather(after, d, table, into)
-    return into
+def goal_states(maze: Maze) -> NDArray[np.int64]:
+    """The states of the maze's goals, in their order, shape (N,)."""
+    return np.array(list(maze.goals.values()))
 
 
 def cells_after(maze: Maze, actions: Sequence[Action]) -> NDArray[np.int64]:
-    """The cell each of the actions leads to when it does not fail, shape (S, A)."""
-    return np.ascontiguousarray(maze.successors[:, list(actions)])
+    """The cell each of the actions, moves first, leads to when it does not fail, shape (S, A)."""
+    return np.ascontiguousarray(maze.successors[:, : len(actions)])
 
 
 def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Array:

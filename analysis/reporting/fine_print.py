@@ -22,7 +22,10 @@ _DEFINITIONS = (
     "is no difference.",
     "Clustered by participant and scenario: influence values are summed over participants, over "
     "scenarios and over trials; the variance is the first two less the third, and not less than "
-    "the first; Student's t on the number of scenarios less one.",
+    "the first. Student's t is on the smaller of two degrees of freedom: the number of scenarios "
+    "less one, and those of the participants, which are Welch's, as the arms share in the variance "
+    "by participant, and with one arm, or with participants in both, their number less one. Mixed "
+    "models take those of the two-way test.",
     "Where the two-way test and the mixed model fall on different sides of alpha, the conclusion "
     "is drawn from the two-way test.",
     "Intervals are at 95 %. Those of single arms in the paper's block are Wilson's for shares and "

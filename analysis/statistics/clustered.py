@@ -19,6 +19,7 @@ from .codes import (
     ONE_PARTICIPANT,
     SCENARIOS_NOT_SHARED,
 )
+from .degrees_of_freedom import ONE_WAY_DF, TWO_WAY_DF, by_participant, within_participants
 from .inference import FEW, Inference, student, undefined
 from .influence import Influence, cluster_count, cluster_variance, of_auc, of_difference
 from .outcome import UNKNOWN, Outcome
@@ -80,18 +81,19 @@ class _Arm:
 def clustered_difference(outcome: Outcome) -> ClusteredDifference:
     """Compare means, trials clustered by participant.
 
-    Linearised variance of a ratio per arm times K/(K-1), Satterthwaite's degrees of freedom.
+    Linearised variance of a ratio per arm times K/(K-1), Welch's degrees of freedom; with
+    participants in both arms that of their summed influence, on participants - 1.
     EmptyArmError if an arm has no value. Source: Cochran (1977), Sampling Techniques.
     """
     data = outcome.present()
     influence = of_difference(data)
     treatment, reference = _arms(data, influence)
     return ClusteredDifference(
-        **_satterthwaite(influence, 0.0, treatment, reference),
+        **_one_way(data, influence, 0.0, treatment, reference),
         unit=outcome.unit,
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="difference of means, trials clustered by participant, t on Satterthwaite's df",
+        method=f"difference of means, trials clustered by participant, {ONE_WAY_DF}",
         source="Cochran (1977), Sampling Techniques, ratio estimates; as R's survey::svymean",
         mean_treatment=float(data.y[data.treated].mean()),
         mean_reference=float(data.y[~data.treated].mean()),
@@ -105,20 +107,21 @@ def clustered_difference(outcome: Outcome) -> ClusteredDifference:
 def clustered_auc(outcome: Outcome) -> ClusteredAuc:
     """Compare which arm's values tend to be larger, trials clustered by participant.
 
-    Variance of the placements per arm times K/(K-1), Satterthwaite's degrees of freedom.
+    Variance of the placements per arm times K/(K-1), Welch's degrees of freedom; with participants
+    in both arms that of their summed influence, on participants - 1.
     EmptyArmError if an arm has no value. Source: Obuchowski (1997).
     """
     data = outcome.present()
     influence = of_auc(data)
     treatment, reference = _arms(data, influence)
-    inference = _satterthwaite(influence, 0.5, treatment, reference)
+    inference = _one_way(data, influence, 0.5, treatment, reference)
     inference["warnings"] = _told_apart(influence.estimate, inference["warnings"])
     return ClusteredAuc(
         **inference,
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="AUC, trials clustered by participant, t on Satterthwaite's df",
+        method=f"AUC, trials clustered by participant, {ONE_WAY_DF}",
         source=OBUCHOWSKI,
         rank_biserial=2 * influence.estimate - 1,
         participants_treatment=treatment.participants,
@@ -127,8 +130,9 @@ def clustered_auc(outcome: Outcome) -> ClusteredAuc:
 
 
 def two_way_difference(outcome: Outcome) -> TwoWay:
-    """Compare means, trials clustered by participant and by scenario; t on scenarios - 1 df.
+    """Compare means, trials clustered by participant and by scenario.
 
+    Participants may be in one arm or in both; t on the degrees of freedom of degrees_of_freedom.py.
     EmptyArmError if an arm has no value. Source: Cameron, Gelbach and Miller (2011).
     """
     data = outcome.present()
@@ -137,8 +141,7 @@ def two_way_difference(outcome: Outcome) -> TwoWay:
         unit=outcome.unit,
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="difference of means, trials clustered by participant and scenario, "
-        "t on scenarios - 1 df",
+        method=f"difference of means, trials clustered by participant and scenario, {TWO_WAY_DF}",
         source=CAMERON,
     )
 
@@ -146,8 +149,9 @@ def two_way_difference(outcome: Outcome) -> TwoWay:
 def two_way_auc(outcome: Outcome) -> TwoWayAuc:
     """Compare which arm's values tend to be larger, clustered by participant and by scenario.
 
-    t on scenarios - 1 degrees of freedom. EmptyArmError if an arm has no value. Source:
-    Obuchowski (1997) for the placements; Cameron, Gelbach and Miller (2011) for two ways.
+    Participants may be in one arm or in both; t on the degrees of freedom of degrees_of_freedom.py.
+    EmptyArmError if an arm has no value. Source: Obuchowski (1997) for the placements; Cameron,
+    Gelbach and Miller (2011) for two ways.
     """
     data = outcome.present()
     influence = of_auc(data)
@@ -158,7 +162,7 @@ def two_way_auc(outcome: Outcome) -> TwoWayAuc:
         unit="probability",
         n=len(data.y),
         n_missing=outcome.n_missing,
-        method="AUC, trials clustered by participant and scenario, t on scenarios - 1 df",
+        method=f"AUC, trials clustered by participant and scenario, {TWO_WAY_DF}",
         source=f"{OBUCHOWSKI}; {CAMERON}",
         rank_biserial=2 * influence.estimate - 1,
     )
@@ -174,21 +178,19 @@ def _arm(data: Outcome, influence: Influence, arm: NDArray[np.bool_]) -> _Arm:
     return _Arm(cluster_variance(h, participant), float(h @ h), cluster_count(participant))
 
 
-def _satterthwaite(
-    influence: Influence, null: float, treatment: _Arm, reference: _Arm
+def _one_way(
+    data: Outcome, influence: Influence, null: float, treatment: _Arm, reference: _Arm
 ) -> Inference:
-    """Test by t; degrees of freedom as the arms share in the variance (Satterthwaite, 1946)."""
-    v_treatment, v_reference = treatment.variance, reference.variance
-    if v_treatment is None or v_reference is None:
+    """Test by t; arms of the same participants vary together, others each by itself."""
+    if treatment.variance is None or reference.variance is None:
         return undefined(influence.estimate, null, ONE_PARTICIPANT)
+    variance = treatment.variance + reference.variance
+    if within_participants(data):
+        variance = cluster_variance(influence.h, data.participant) or 0.0
     fewer = min(treatment.participants, reference.participants)
-    variance = v_treatment + v_reference
-    spread = v_treatment**2 / (treatment.participants - 1)
-    spread += v_reference**2 / (reference.participants - 1)
-    df = variance**2 / spread if spread else 0.0
-    return student(
-        influence.estimate, null, variance, df, *((FEW_CLUSTERS,) if fewer < FEW else ())
-    )
+    few = (FEW_CLUSTERS,) if fewer < FEW else ()
+    df = by_participant(data, influence.h)
+    return student(influence.estimate, null, variance, df, *few)
 
 
 def _told_apart(auc: float, warnings: tuple[str, ...]) -> tuple[str, ...]:

@@ -21,8 +21,9 @@ from .codes import (
     ZERO_VARIANCE,
 )
 from .crossed_fit import CrossedFit, CrossedModel
+from .degrees_of_freedom import by_participant_and_scenario, participants_of_arms
 from .inference import FEW, Inference, student, undefined
-from .influence import cluster_count
+from .influence import cluster_count, of_auc
 from .outcome import Clusters, Outcome
 from .result import TestResult
 
@@ -60,12 +61,12 @@ def crossed_test(
 ) -> tuple[CrossedResult, CrossedFit | None]:
     """Fit values ~ arm + (1 | participant) + (1 | scenario) [+ (1 | scenario in arm)], and test.
 
-    By t on scenarios - 1 degrees of freedom; the standard error counts in that variances are
-    estimated. No estimate, and no fit, if all values are equal, if every value of one arm is at
-    least every value of the other (`separation`), if there are more than 500 scenarios or if no
-    maximum is found; no test with one scenario or one participant in an arm. A factor that trials
-    cannot tell from others is left out. Each of these adds a warning. EmptyArmError if an arm has
-    no value.
+    By t on the degrees of freedom of the two-way AUC, which for values 0 and 1 are those of the
+    two-way difference; the standard error counts in that variances are estimated. No estimate, and
+    no fit, if all values are equal, if every value of one arm is at least every value of the other
+    (`separation`), if there are more than 500 scenarios or if no maximum is found; no test with one
+    scenario or one participant in an arm. A factor that trials cannot tell from others is left out.
+    Each of these adds a warning. EmptyArmError if an arm has no value.
     """
     from scipy.special import chdtrc
     from threadpoolctl import threadpool_limits
@@ -144,14 +145,15 @@ def _obstacle(data: Outcome) -> str | None:
 
 def _inference(data: Outcome, fit: CrossedFit, warnings: tuple[str, ...]) -> Inference:
     scenarios = cluster_count(data.scenario)
-    fewest = min(cluster_count(data.participant[arm]) for arm in (data.treated, ~data.treated))
+    fewest = min(participants_of_arms(data))
     if fewest == 1:
         return undefined(fit.effect, 0.0, *warnings, ONE_PARTICIPANT)
     if scenarios == 1:
         return undefined(fit.effect, 0.0, *warnings, ONE_SCENARIO)
     if min(fewest, scenarios) < FEW:
         warnings = (*warnings, FEW_CLUSTERS)
-    return student(fit.effect, 0.0, float(fit.covariance[1, 1]), scenarios - 1, *warnings)
+    df = by_participant_and_scenario(data, of_auc(data).h)
+    return student(fit.effect, 0.0, float(fit.covariance[1, 1]), df, *warnings)
 
 
 def _exp(value: float | None) -> float | None:

@@ -40,11 +40,11 @@ def crossed_logistic(outcome: Outcome, interaction: bool = True) -> CrossedLogis
 
     `outcome.y` is 1 where correct, else 0; without `interaction` the last term is left out. Maximum
     likelihood by Laplace's approximation, as R's glmmTMB and lme4 (nAGQ = 1); standard error from
-    the observed information of all parameters, as glmmTMB; t on scenarios - 1 degrees of freedom.
-    The interval of the risk difference is by the delta method. What cannot be estimated: see
-    crossed_test. Source: Breslow and Clayton (1993), Journal of the American Statistical
-    Association 88, 9-25; Baayen, Davidson and Bates (2008), Journal of Memory and Language 59,
-    390-412.
+    the observed information of all parameters, as glmmTMB; t on the degrees of freedom of the
+    two-way difference. The interval of the risk difference is by the delta method. What cannot be
+    estimated: see crossed_test. Source: Breslow and Clayton (1993), Journal of the American
+    Statistical Association 88, 9-25; Baayen, Davidson and Bates (2008), Journal of Memory and
+    Language 59, 390-412.
     """
     result, fit = crossed_test(
         outcome,

@@ -16,10 +16,10 @@ def crossed_ordinal(outcome: Outcome, interaction: bool = True) -> CrossedResult
     `outcome.y` may be any ordered values; those that occur are the categories, and only their order
     counts, by a cumulative logit. Without `interaction` the last term is left out, and the test
     rejects too often where scenarios differ between the arms. Maximum likelihood by Laplace's
-    approximation, as R's ordinal::clmm; t on scenarios - 1 degrees of freedom, where clmm tests by
-    z. What cannot be estimated: see crossed_test. Source: Agresti (2010), Analysis of Ordinal
-    Categorical Data, chapter 10; Christensen (2019), ordinal; for the last term Baayen, Davidson
-    and Bates (2008), Journal of Memory and Language 59, 390-412.
+    approximation, as R's ordinal::clmm; t on the degrees of freedom of the two-way AUC, where
+    clmm tests by z. What cannot be estimated: see crossed_test. Source: Agresti (2010), Analysis of
+    Ordinal Categorical Data, chapter 10; Christensen (2019), ordinal; for the last term Baayen,
+    Davidson and Bates (2008), Journal of Memory and Language 59, 390-412.
     """
     result, _ = crossed_test(
         outcome,

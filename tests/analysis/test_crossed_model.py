@@ -13,12 +13,13 @@ from analysis.crossed_model import (
     Spread,
     confidence_model,
     correct_model,
+    halves,
     simulate,
 )
 
 SPREAD = Spread(0.8, 0.8, 0.4)
 NONE = Spread(0, 0, 0)
-LARGE = Design(participants=3000, trials_each=10, scenarios=1000)
+LARGE = halves(3000, trials_each=10, scenarios=1000)
 
 
 def drawn(model, design, seed=1):
@@ -72,7 +73,7 @@ def test_an_auc_of_a_half_is_no_shift():
 
 
 def test_a_scenarios_effect_is_shared_by_the_arms_and_its_interaction_is_not():
-    design = Design(participants=3000, trials_each=10, scenarios=30)
+    design = halves(3000, trials_each=10, scenarios=30)
     shared = drawn(correct_model(Spread(0, 2, 0), 0.7, 0.7), design)
     apart = drawn(correct_model(Spread(0, 0, 2), 0.7, 0.7), design)
     for outcome, low, high in ((shared, 0.95, 1), (apart, -0.5, 0.5)):
@@ -82,7 +83,7 @@ def test_a_scenarios_effect_is_shared_by_the_arms_and_its_interaction_is_not():
 
 
 def test_participants_differ_by_their_own_effect_only():
-    design = Design(participants=400, trials_each=30, scenarios=30)
+    design = halves(400, trials_each=30, scenarios=30)
     for sd, least, most in ((0, 0.06, 0.1), (2, 0.25, 0.4)):
         outcome = drawn(correct_model(Spread(sd, 0, 0), 0.7, 0.7), design)
         between = np.std(np.bincount(outcome.participant, outcome.y) / 30)
@@ -90,22 +91,30 @@ def test_participants_differ_by_their_own_effect_only():
 
 
 @given(
-    half=st.integers(1, 30), scenarios=st.integers(1, 40), data=st.data(), seed=st.integers(0, 99)
+    treatment=st.integers(1, 30),
+    reference=st.integers(1, 30),
+    trials_each=st.integers(1, 40),
+    scenarios=st.integers(1, 40),
+    seed=st.integers(0, 99),
 )
 @settings(max_examples=40)
-def test_scenarios_are_dealt_evenly_and_nobody_sees_one_twice(half, scenarios, data, seed):
-    trials_each = data.draw(st.integers(1, scenarios))
-    design = Design(2 * half, trials_each, scenarios)
+def test_scenarios_are_dealt_evenly_and_all_are_seen_before_one_again(
+    treatment, reference, trials_each, scenarios, seed
+):
+    design = Design(treatment, reference, trials_each, scenarios)
     outcome = drawn(correct_model(NONE, 0.5, 0.5), design, seed)
-    pairs = np.column_stack([outcome.participant, outcome.scenario])
-    assert len(np.unique(pairs, axis=0)) == len(pairs) == 2 * half * trials_each
-    for arm in (True, False):
+    seen = np.zeros((design.participants, scenarios))
+    np.add.at(seen, (outcome.participant, outcome.scenario), 1)
+    assert (seen.sum(axis=1) == trials_each).all()
+    assert (seen.max(axis=1) - seen.min(axis=1) <= 1).all()
+    for arm, size in ((True, treatment), (False, reference)):
+        assert len(np.unique(outcome.participant[outcome.treated == arm])) == size
         uses = np.bincount(outcome.scenario[outcome.treated == arm], minlength=scenarios)
         assert uses.max() - uses.min() <= 1
 
 
 def test_the_same_seed_gives_the_same_trials_and_another_does_not():
-    model, design = confidence_model(SPREAD), Design(20)
+    model, design = confidence_model(SPREAD), halves(20)
     first, again, other = (drawn(model, design, seed) for seed in (3, 3, 4))
     assert (first.y == again.y).all()
     assert (first.scenario == again.scenario).all()
@@ -117,8 +126,10 @@ def test_the_same_seed_gives_the_same_trials_and_another_does_not():
     [
         (lambda: Spread(0.8, -1, 0), "expected 0 to 5 on the logit scale, got -1"),
         (lambda: Spread(float("nan"), 0, 0), "got nan"),
-        (lambda: Design(41), "expected an even number from 2, got 41"),
-        (lambda: Design(40, 38, 37), "expected 1 to 37"),
+        (lambda: halves(41), "expected an even number from 2, got 41"),
+        (lambda: Design(0, 3), "participants in an arm: expected at least 1, got 0"),
+        (lambda: Design(3, 3, 0), "trials per participant: expected at least 1, got 0"),
+        (lambda: Design(3, 3, 10, 0), "scenarios: expected at least 1, got 0"),
         (lambda: correct_model(NONE, 1, 0.7), "expected .001 to .999, got 1"),
         (lambda: confidence_model(NONE, 0.8), "expected .05 to .75, got 0.8"),
     ],

@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from analysis.__main__ import alone
-from analysis.crossed_model import Design, Spread
+from analysis.crossed_model import Spread, halves
 from analysis.level_check import LevelTable, level_check
 
 HARD = Spread(0.8, 0.5, 0.8)
@@ -12,7 +12,7 @@ NONE = Spread(0, 0, 0)
 
 
 def checked(tests, spreads, studies=250, participants=150):
-    return level_check(spreads, tests, Design(participants), studies, 1, 1, lambda _done: None)
+    return level_check(spreads, tests, halves(participants), studies, 1, 1, lambda _done: None)
 
 
 def run(*arguments):
@@ -56,6 +56,7 @@ def test_the_command_prints_a_row_a_test_and_a_column_for_each_of_the_sds():
         "two-way AUC",
         "chi square",
     ]
+    assert "10 + 10 participants with 10 trials each of 37 scenarios" in " ".join(lines)
     assert "Monte-Carlo error" in result.stdout
 
 
@@ -65,7 +66,10 @@ def test_the_command_prints_a_row_a_test_and_a_column_for_each_of_the_sds():
         (["--tests", "anova"], "--tests: expected some of chi_square, gee_logistic"),
         (["--sds", "a/b/c"], "--sds: expected"),
         (["--sds", "9/0/0"], "standard deviation: expected 0 to 5"),
-        (["--participants", "3"], "expected an even number from 2, got 3"),
+        (["--participants", "3"], "expected an even number of both arms together, or N/M"),
+        (["--participants", "3/4/5"], "got '3/4/5'"),
+        (["--participants", "0/4"], "participants in an arm: expected at least 1, got 0"),
+        (["--trials", "0"], "trials per participant: expected at least 1, got 0"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(options, message):

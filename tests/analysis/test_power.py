@@ -5,6 +5,7 @@ import json
 import numpy as np
 import polars as pl
 import pytest
+from scipy import stats
 from typer.testing import CliRunner
 
 from analysis import AnalysisError
@@ -84,18 +85,25 @@ def test_progress_is_told_study_by_study():
 
 
 def test_a_curve_that_made_the_points_is_found_again():
-    made = PowerCurve(floor=0.012, slope=4.7, critical=2.028094)
+    made = PowerCurve(floor=0.012, slope=4.7, scenarios=37)
     sizes = [20, 40, 60, 80]
     exact = [share(round(1e6 * power), 10**6) for power in made.at(np.array(sizes))]
     found = fit_power(sizes, exact, scenarios=37)
-    assert (found.floor, found.slope, found.critical) == pytest.approx(
-        (made.floor, made.slope, made.critical), rel=1e-2
-    )
+    assert (found.floor, found.slope) == pytest.approx((made.floor, made.slope), rel=1e-2)
+    assert found.scenarios == made.scenarios
 
 
+@pytest.mark.parametrize(("participants", "df"), [(20, 18), (38, 36), (80, 36)])
+def test_the_curves_t_has_the_degrees_of_participants_where_they_are_fewer(participants, df):
+    curve = PowerCurve(floor=0.0, slope=1.0, scenarios=37)
+    power = stats.norm.cdf(participants**0.5 - stats.t.isf(0.025, df))
+    assert curve.at(np.array([participants])) == pytest.approx(power)
+
+
+@pytest.mark.parametrize("slope", [0.5, 5])
 @pytest.mark.parametrize("power", [0.5, 0.8, 0.95])
-def test_the_number_needed_is_the_smallest_even_one_with_the_power(power):
-    curve = PowerCurve(floor=0.01, slope=5, critical=2)
+def test_the_number_needed_is_the_smallest_even_one_with_the_power(power, slope):
+    curve = PowerCurve(floor=0.01, slope=slope, scenarios=300)
     number = curve.needed(power)
     assert number
     assert number % 2 == 0
@@ -103,7 +111,7 @@ def test_the_number_needed_is_the_smallest_even_one_with_the_power(power):
 
 
 def test_scenarios_too_few_for_a_power_are_not_made_up_for_by_participants():
-    assert PowerCurve(floor=0.11, slope=5, critical=2).needed(0.9) is None
+    assert PowerCurve(floor=0.11, slope=5, scenarios=37).needed(0.9) is None
 
 
 @pytest.mark.parametrize("count", [0, 40])
@@ -191,7 +199,7 @@ def test_the_help_says_that_power_is_that_of_one_test_uncorrected():
         (["--participants", "many"], "--participants: expected whole numbers"),
         (["--participants", "41"], "participants: expected an even number from 2, got 41"),
         (["--p1", "1"], "share correct: expected .001 to .999, got 1"),
-        (["--trials", "40"], "trials per participant: expected 1 to 37"),
+        (["--trials", "0"], "trials per participant: expected at least 1, got 0"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(options, message):

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 
-from analysis.crossed_model import Design, Spread, confidence_model, correct_model, simulate
+from analysis.crossed_model import Spread, confidence_model, correct_model, halves, simulate
 
 EACH = 10
 SPREAD = Spread(0.8, 0.5, 0.4)
@@ -53,7 +53,7 @@ def measured(arguments: list[str]) -> tuple[float, float]:
 
 def write_trials(participants: int, rng: np.random.Generator, path: Path) -> None:
     """Write the trials of a study in which everybody answered all of theirs."""
-    design = Design(participants, EACH)
+    design = halves(participants, EACH)
     given = simulate(correct_model(SPREAD, 0.85, 0.7), design, rng)
     confidence = simulate(confidence_model(SPREAD), design, rng).y
     length_s = 15.0 + given.scenario % 12

@@ -69,7 +69,7 @@ def test_what_no_scenario_was_shared_in_does_not_speak_of_other_scenarios(tmp_pa
     for row in rows:
         row["scenario"] += row["condition"]
     text = markdown(report_parts(analyse_path(write_table(TRIALS, rows, tmp_path)[0])))
-    assert "t(5) = " in text.partition("## Please note")[0]
+    assert "t(4) = " in text.partition("## Please note")[0]
     assert "Every scenario was seen in one arm only" in text
     assert "ome scenarios were seen" not in text
     assert "other scenarios too" not in text
