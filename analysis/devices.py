@@ -107,7 +107,9 @@ def _groups(name: str, trait: Trait, data: Dataset, selector: Selector) -> Itera
     assert rows is not None
     found = rows.group_by("participant").agg(classed.alias("class"))
     for each in (*trait.classes, UNKNOWN):
-        people = selector.analysed.intersection(found.filter(pl.col("class") == each)["participant"])
+        people = selector.analysed.intersection(
+            found.filter(pl.col("class") == each)["participant"]
+        )
         if people:
             yield DeviceGroup(name, each, selector.only(people))
 

@@ -14,6 +14,9 @@ from .plan import Primary
 from .statistics.outcome import Outcome
 from .statistics.result import TestResult
 
+MOST_TRIALS = 100_000
+"""Above, the tests of some twenty selections would take longer than all the rest of a report."""
+
 
 @dataclass(frozen=True)
 class Selection:
