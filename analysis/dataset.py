@@ -31,7 +31,8 @@ class Dataset:
     `other_conditions` counts the trials of conditions that the plan does not compare. `renamed`
     pairs the file's column names with those of the contract, by `mapping` or because they are
     understood without one. `exported` is whether Goalguess made the file of trials, whose times
-    then count motion only. `oddities` are of the whole files.
+    then count motion only. `recorded` names the columns that the file of participants has.
+    `oddities` are of the whole files.
     """
 
     plan: Plan
@@ -48,6 +49,7 @@ class Dataset:
     flow: Flow
     renamed: tuple[tuple[str, str], ...]
     exported: bool
+    recorded: tuple[str, ...]
     oddities: tuple[Oddity, ...]
     mapping: TableMapping
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import polars as pl
 
 from .dataset import Dataset
+from .regions import NOT_RECOGNISED, NOT_TOLD, SEVERAL, world_region
 from .statistics.estimates import Mean, mean
 
 OVERALL = "overall"
@@ -16,6 +18,9 @@ QUESTIONS = ("gender", "nationality", "education", "occupation", "robot_familiar
 """Questions answered by a choice or a word; age, a number, is described apart."""
 
 NO_ANSWER = "no answer"
+
+_LAST = {SEVERAL: 1, NOT_RECOGNISED: 2, NOT_TOLD: 3}
+"""What is listed after the regions, in this order, however frequent it is."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +36,13 @@ class Demographics:
     """Answers of the participants whose trials are analysed.
 
     `n` has the participants per condition and `OVERALL`; `age` their age in years, None for a
-    group in which nobody told it; `answers` lists each question's answers, most frequent first.
+    group in which nobody told it; `regions` are the world regions of the nationalities told;
+    `answers` lists each question's answers, most frequent first.
     """
 
     n: dict[str, int]
     age: dict[str, Mean | None]
+    regions: tuple[Answer, ...]
     answers: dict[str, tuple[Answer, ...]]
 
 
@@ -51,7 +58,16 @@ def demographics(data: Dataset) -> Demographics | None:
     return Demographics(
         n={name: len(group) for name, group in groups.items()},
         age={name: _age(group) for name, group in groups.items()},
-        answers={question: _answers(question, groups) for question in QUESTIONS},
+        regions=_regions(groups),
+        answers={
+            question: _counted(
+                {
+                    name: group[question].fill_null(NO_ANSWER).to_list()
+                    for name, group in groups.items()
+                }
+            )
+            for question in QUESTIONS
+        },
     )
 
 
@@ -60,10 +76,17 @@ def _age(group: pl.DataFrame) -> Mean | None:
     return mean(ages, "years") if group["age"].count() else None
 
 
-def _answers(question: str, groups: dict[str, pl.DataFrame]) -> tuple[Answer, ...]:
-    given = {name: group[question].fill_null(NO_ANSWER).to_list() for name, group in groups.items()}
-    different = sorted(set(given[OVERALL]))
+def _regions(groups: Mapping[str, pl.DataFrame]) -> tuple[Answer, ...]:
+    counted = _counted(
+        {name: list(map(world_region, group["nationality"])) for name, group in groups.items()}
+    )
+    return tuple(sorted(counted, key=lambda row: _LAST.get(row.answer, 0)))
+
+
+def _counted(given: Mapping[str, Sequence[str]]) -> tuple[Answer, ...]:
+    """Count each answer in each group, the most frequent over all first, then by the alphabet."""
     table = [
-        Answer(answer, {name: given[name].count(answer) for name in groups}) for answer in different
+        Answer(answer, {name: answers.count(answer) for name, answers in given.items()})
+        for answer in sorted(set(given[OVERALL]))
     ]
     return tuple(sorted(table, key=lambda row: -row.counts[OVERALL]))

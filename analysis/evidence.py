@@ -12,7 +12,10 @@ import polars as pl
 from .as_in_paper import PaperBlock, as_in_paper
 from .conclusions import Conclusion, conclude
 from .dataset import Dataset, outcome
+from .devices import Devices, by_device
+from .exclusion_variants import ExclusionVariant, exclusion_variants
 from .methods import Comparison, compare
+from .selections import MOST_TRIALS, Selector
 from .sensitivity import Sensitivity, sensitivity
 from .statistics.calibration import (
     AccuracyBy,
@@ -52,7 +55,8 @@ class Likeness:
 class Evidence:
     """The numbers of one analysis; mappings are by measure, a column of the trials.
 
-    `chance` and `discrimination` are of the treatment and of the reference arm.
+    `chance` and `discrimination` are of the treatment and of the reference arm. `exclusions` and
+    `devices` are None above `selections.MOST_TRIALS` trials.
     """
 
     paper: PaperBlock
@@ -66,6 +70,8 @@ class Evidence:
     by_time: AccuracyBy
     discrimination: tuple[Discrimination, Discrimination]
     sensitivity: Sensitivity
+    exclusions: tuple[ExclusionVariant, ...] | None
+    devices: Devices | None
 
 
 def gather(data: Dataset) -> Evidence:
@@ -78,6 +84,8 @@ def gather(data: Dataset) -> Evidence:
     ends = stops(
         stop_time_s, _numbers(data, "length_s"), correct.y, correct.treated, correct.participant
     )
+    selector = Selector(data, {measure: each.primary for measure, each in comparisons.items()})
+    few = len(data.trials_before_exclusions) <= MOST_TRIALS
     low, high = data.confidence_scale
     levels = range(math.floor(low), math.ceil(high) + 1)
     return Evidence(
@@ -92,6 +100,8 @@ def gather(data: Dataset) -> Evidence:
         by_time=accuracy_by_time(correct, stop_time_s),
         discrimination=discrimination(correct, confidence),
         sensitivity=sensitivity(data),
+        exclusions=exclusion_variants(data, selector) if few else None,
+        devices=by_device(data, selector) if few else None,
     )
 
 

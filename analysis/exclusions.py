@@ -39,11 +39,16 @@ class Excluded:
 
 @dataclass(frozen=True)
 class Rule:
-    """What a rule takes, the reason that reports give, and the types of its parameters."""
+    """What a rule takes, the reason that reports give, and the types of its parameters.
+
+    `usual` gives their values where a rule is tried that the plan does not use, for the number of
+    trials that each participant should have.
+    """
 
     takes: Callable[..., pl.Expr]
     reason: str
     parameters: Mapping[str, type] = field(default_factory=dict)
+    usual: Callable[[int], Mapping[str, float]] = lambda _planned: {}
     table: str = TRIALS.name
 
 
@@ -89,20 +94,32 @@ def impossible_time() -> pl.Expr:
 
 
 RULES = {
-    "incomplete": Rule(incomplete, "answered fewer than {fewer_than} trials", {"fewer_than": int}),
+    "incomplete": Rule(
+        incomplete,
+        "answered fewer than {fewer_than} trials",
+        {"fewer_than": int},
+        lambda planned: {"fewer_than": planned},
+    ),
     "too_fast_trials": Rule(
-        too_fast_trials, "stopped too fast in {at_least} trials or more", {"at_least": int}
+        too_fast_trials,
+        "stopped too fast in {at_least} trials or more",
+        {"at_least": int},
+        lambda _planned: {"at_least": 3},
     ),
     "same_guess": Rule(same_guess, "guessed the same area in all trials"),
     "never_moved_pointer": Rule(never_moved_pointer, "never moved the pointer"),
     "long_pauses": Rule(
-        long_pauses, "paused for more than {above_s:g} s in all", {"above_s": float}
+        long_pauses,
+        "paused for more than {above_s:g} s in all",
+        {"above_s": float},
+        lambda _planned: {"above_s": 60.0},
     ),
     "duplicate_stimuli": Rule(duplicate_stimuli, "saw a scenario more than once"),
     "failed_control_question": Rule(
         failed_control_question,
         "needed more tries than {tries_above} for the control question",
         {"tries_above": int},
+        lambda _planned: {"tries_above": 1},
         PARTICIPANTS.name,
     ),
     "impossible_time": Rule(impossible_time, "sent times that cannot be", table=PARTICIPANTS.name),
@@ -120,21 +137,59 @@ def exclude(
 
     TomlError, naming the rule's place in `plan_file`, where a table or column it needs is missing.
     """
-    tables = {TRIALS.name: trials, PARTICIPANTS.name: participants}
     left = trials.select(pl.col("participant").unique())
-    taken = []
+    excluded = []
     for place, exclusion in enumerate(exclusions, start=1):
-        rule = RULES[exclusion.rule]
-        takes = rule.takes(**exclusion.parameters)
-        table = tables[rule.table]
-        missing = set(takes.meta.root_names()) - set(() if table is None else table.columns)
-        if table is None or missing:
-            wanted = f"the column {', '.join(sorted(missing))} in the table {rule.table}"
-            raise TomlError(
-                plan_file, f"exclusions[{place}].rule", f"{wanted} for {exclusion.rule}", "none"
-            )
-        found = table.group_by("participant").agg(takes.alias("taken")).filter("taken")
+        if missing := _missing(exclusion, trials, participants):
+            wanted = f"{_columns(exclusion, missing)} for {exclusion.rule}"
+            raise TomlError(plan_file, f"exclusions[{place}].rule", wanted, "none")
+        found = taken(exclusion, trials, participants)
         out = left.join(found, on="participant", how="semi")["participant"].sort()
         left = left.join(out.to_frame(), on="participant", how="anti")
-        taken.append(Excluded(exclusion, tuple(out)))
-    return tuple(taken)
+        excluded.append(Excluded(exclusion, tuple(out)))
+    return tuple(excluded)
+
+
+def taken(
+    exclusion: Exclusion, trials: pl.DataFrame, participants: pl.DataFrame | None
+) -> pl.DataFrame:
+    """Return, in the column participant, all whom one rule takes; the tables have its columns."""
+    takes = RULES[exclusion.rule].takes(**exclusion.parameters)
+    rows = _rows(exclusion, trials, participants)
+    return rows.group_by("participant").agg(takes.alias("taken")).filter("taken")
+
+
+def cannot_be_applied(
+    exclusion: Exclusion, trials: pl.DataFrame, participants: pl.DataFrame | None
+) -> str:
+    """Say which column a rule needs and finds missing or empty; else return an empty text."""
+    if missing := _missing(exclusion, trials, participants):
+        return f"there is no {_columns(exclusion, missing).removeprefix('the ')}"
+    rows = _rows(exclusion, trials, participants)
+    empty = [name for name in _needed(exclusion) if rows[name].null_count() == len(rows)]
+    return f"{_columns(exclusion, empty)} is empty" if empty else ""
+
+
+def _missing(
+    exclusion: Exclusion, trials: pl.DataFrame, participants: pl.DataFrame | None
+) -> list[str]:
+    has = _rows(exclusion, trials, participants).columns
+    return [name for name in _needed(exclusion) if name not in has]
+
+
+def _needed(exclusion: Exclusion) -> list[str]:
+    takes = RULES[exclusion.rule].takes(**exclusion.parameters)
+    return sorted(set(takes.meta.root_names()))
+
+
+def _rows(
+    exclusion: Exclusion, trials: pl.DataFrame, participants: pl.DataFrame | None
+) -> pl.DataFrame:
+    """Return the rule's table, without any column where there is none."""
+    if RULES[exclusion.rule].table == TRIALS.name:
+        return trials
+    return pl.DataFrame() if participants is None else participants
+
+
+def _columns(exclusion: Exclusion, names: Sequence[str]) -> str:
+    return f"the column {', '.join(names)} in the table {RULES[exclusion.rule].table}"

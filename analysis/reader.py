@@ -61,6 +61,7 @@ def read_dataset(
         flow=participant_flow(plan, trials, participants, others_by_condition, excluded),
         renamed=study.renamed,
         exported=study.exported,
+        recorded=study.recorded,
         oddities=study.oddities,
         mapping=mapping,
     )

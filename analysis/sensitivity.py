@@ -10,16 +10,14 @@ import polars as pl
 from .completion import Completion, completion
 from .contract import COMPLETED
 from .dataset import Dataset, outcome
-from .errors import EmptyArmError
 from .methods import primary_test
-from .plan import Primary
+from .selections import tested
 from .statistics.dropout import (
     Dropout,
     completers,
     differential_dropout,
     intention_to_treat,
 )
-from .statistics.outcome import Outcome
 from .statistics.result import TestResult
 
 
@@ -75,7 +73,7 @@ def _dropout(data: Dataset) -> tuple[Dropout, str]:
 def _of_completers(data: Dataset) -> dict[str, TestResult | None]:
     done = _completion(data).people.sort("participant")["done"].to_numpy()
     return {
-        each.measure: _tested(each, completers(outcome(data, each.measure), done))
+        each.measure: tested(each, completers(outcome(data, each.measure), done))
         for each in data.plan.primary
     }
 
@@ -104,10 +102,3 @@ def _worst(data: Dataset, measure: str) -> float:
     if measure == "confidence":
         return data.confidence_scale[0]
     return float(data.trials["length_s"].drop_nulls().to_numpy().mean())
-
-
-def _tested(primary: Primary, selected: Outcome) -> TestResult | None:
-    try:
-        return primary_test(primary, selected)
-    except EmptyArmError:
-        return None

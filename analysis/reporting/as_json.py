@@ -55,6 +55,8 @@ def as_json(results: Results) -> dict[str, Any]:
             "discrimination_by_confidence": _by_arm(evidence.discrimination),
         },
         "sensitivity": evidence.sensitivity,
+        "by_exclusion_rule": evidence.exclusions,
+        "by_device": evidence.devices,
         "as_in_paper": {"trials_treated_as_independent": True, **_fields(evidence.paper)},
         "warnings": results.notices,
     }

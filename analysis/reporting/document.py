@@ -40,7 +40,10 @@ class Items:
 
 @dataclass(frozen=True)
 class Grid:
-    """A table; the first column names the rows and is set left, numbers are set right."""
+    """A table; the first column names the rows and is set left, numbers are set right.
+
+    A cell may have several lines, which only HTML keeps apart.
+    """
 
     caption: str
     header: tuple[str, ...]

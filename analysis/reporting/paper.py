@@ -28,6 +28,14 @@ _AS_GIVEN = (
     "may not be comparable with the paper's mean times of 15.67 s and 18.22 s."
 )
 
+_REGIONS = (
+    "World regions are those of UN M49, with Northern America apart from Latin America and the "
+    "Caribbean, and follow from the nationalities below them by a list that comes with Goalguess "
+    "(analysis/nationalities.csv). Several: nationalities of more than one region. Not recognised: "
+    "an answer with a word that the list does not have; nothing is guessed. Not told: no answer, "
+    "or “prefer not to say”."
+)
+
 
 def paper_parts(block: PaperBlock, *, exported: bool) -> list[Part]:
     """Return the paper's statistics: in words, then a table a measure.
@@ -130,16 +138,19 @@ def demographics_parts(block: PaperBlock) -> list[Part]:
     ages = [_age(found.age[group]) for group in groups]
     told = ("age, years: mean (SD)", "age, years: range", "age told by")
     rows += [(name, *cells) for name, cells in zip(told, zip(*ages, strict=True), strict=True)]
-    for question, answers in found.answers.items():
+    for question, answers in ({"world_region": found.regions} | found.answers).items():
         name = question.replace("_", " ")
         for answer in answers:
             counts = (_counted(answer.counts[group], found.n[group]) for group in groups)
             rows.append((f"{name}: {_in_english(answer.answer)}", *counts))
     header = ("", *block.arms.labels.values(), "both")
-    return with_reason(
-        Grid("Demographics of participants with an analysed trial", header, tuple(rows)),
-        "no age was told, or one alone, which has no standard deviation",
-    )
+    return [
+        *with_reason(
+            Grid("Demographics of participants with an analysed trial", header, tuple(rows)),
+            "no age was told, or one alone, which has no standard deviation",
+        ),
+        Paragraph(_REGIONS),
+    ]
 
 
 def _in_english(answer: str) -> str:

@@ -16,6 +16,7 @@ from .method_tables import method_parts
 from .paper import TITLE as AS_IN_PAPER
 from .paper import demographics_parts, paper_parts
 from .people_tables import sample_parts, sensitivity_parts
+from .selection_tables import device_parts, exclusion_parts
 
 _TITLE = "what the study shows"
 _HOW = (
@@ -40,6 +41,8 @@ def report_parts(
         *sample_parts(evidence.paper.sample, data.flow, data.arms),
         *demographics_parts(evidence.paper),
         *sensitivity_parts(evidence, plan),
+        *exclusion_parts(evidence.exclusions, evidence.conclusions, plan),
+        *device_parts(evidence.devices, evidence.conclusions, plan),
         Heading("All methods"),
         *(
             part
