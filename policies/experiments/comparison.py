@@ -1,5 +1,6 @@
 """What a comparison of frameworks is: every choice of it, and the preset of the paper's authors."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -78,22 +79,31 @@ class Comparison:
     def __post_init__(self) -> None:
         if self.most_moves is None and self.mode == "as_reported":
             object.__setattr__(self, "most_moves", MOST_MOVES)
-        self._check_preset()
-        if self.test not in (None, *get_args(Test)):
-            raise ModelError(f"expected a test in {', '.join(get_args(Test))}; came {self.test!r}")
-        if self.pairs is not None and self.pairs < 1:
-            raise ModelError(f"expected at least 1 pair a world, came {self.pairs}")
-        if self.mode not in SEARCHES:
-            raise ModelError(f"expected mode in {', '.join(SEARCHES)}; came {self.mode!r}")
-        if self.most_moves is not None and self.most_moves < 1:
-            raise ModelError(f"expected at least 1 move, came {self.most_moves}")
-        if not self.variants or set(self.variants) - set(POLMDPS):
-            raise ModelError(f"expected variants in {', '.join(POLMDPS)}; came {self.variants}")
-        if self.mode == "as_reported" and self.actions != "udlr":
+        if self.preset:
+            self._check_preset(self.preset)
+        distances = (*get_args(Distance), *(["reported"] if self.preset else []))
+        for name, came, allowed in (
+            ("a test", [self.test] if self.test else [], get_args(Test)),
+            ("mode", [self.mode], SEARCHES),
+            ("variants", self.variants, POLMDPS),
+            ("a distance", [self.distance], distances),
+        ):
+            for value in came:
+                if value not in allowed:
+                    raise ModelError(f"expected {name} in {', '.join(allowed)}; came {value!r}")
+        for expected, number in (
+            ("pair a world", self.pairs),
+            ("variant", len(self.variants)),
+            ("move", self.most_moves),
+        ):
+            if number is not None and number < 1:
+                raise ModelError(f"expected at least 1 {expected}, came {number}")
+        if not (math.isfinite(self.observer_beta) and self.observer_beta > 0):
             raise ModelError(
-                f"expected actions udlr with mode as_reported, came {self.actions}: "
-                "that baseline has four moves"
+                f"expected a finite observer_beta above 0, came {self.observer_beta:g}"
             )
+        if self.mode == "as_reported" and self.actions != "udlr":
+            raise ModelError(f"expected actions udlr with mode as_reported, came {self.actions}")
         _ = self.search, self.polmdps  # which check the others
 
     @property
@@ -143,22 +153,16 @@ class Comparison:
             raise ModelError("expected a preset that measures sqrt(1 - b(g)^2) itself")
         return self.distance
 
-    def _check_preset(self) -> None:
-        if self.preset is None:
-            if self.distance not in get_args(Distance):
-                raise ModelError(
-                    f"expected a distance in {', '.join(get_args(Distance))}; "
-                    f"came {self.distance!r}"
-                )
-            return
-        if self.preset not in PRESETS:
-            raise ModelError(f"expected a preset in {', '.join(PRESETS)}; came {self.preset!r}")
-        for name, settled in PRESETS[self.preset].items():
+    def _check_preset(self, preset: str) -> None:
+        if preset not in PRESETS:
+            raise ModelError(f"expected a preset in {', '.join(PRESETS)}; came {preset!r}")
+        for name, settled in PRESETS[preset].items():
             if getattr(self, name) != settled:
-                raise ModelError(
-                    f"expected {name} {settled} with the preset {self.preset}, "
-                    f"came {getattr(self, name)}"
+                expected, came = (
+                    " ".join(value) if isinstance(value, tuple) else value
+                    for value in (settled, getattr(self, name))
                 )
+                raise ModelError(f"expected {name} {expected} with preset {preset}, came {came}")
 
     def moves_allowed(self, distance: float) -> int:
         """Moves within which a run of any framework counts as arrived."""

@@ -9,99 +9,13 @@ from hypothesis import strategies as st
 
 from policies import Bandit, ModelError, format_maze, parse_maze, play_lmdp, random_maze
 from policies.lmdp_bandit import BanditSearch
+from tests.policies.plain import Plain
 
 CORRIDOR = """\
 +---+---+---+---+
 | A   .   .   B |
 +---+---+---+---+
 """
-MOVES = ((-1, 0), (1, 0), (0, -1), (0, 1))
-
-
-class Plain:
-    """The mode's pseudo-code with lists and dictionaries, sharing nothing with the package.
-
-    Its draws come in the order of the compiled bandit's: a uniform for an action of the optimal
-    policy, and one for whether an action that leads away fails.
-    """
-
-    def __init__(self, text, goal, *, depth=10):
-        lines = text.splitlines()
-        cells = [(i, j) for i in range(len(lines) // 2) for j in range(len(lines[0]) // 4)]
-        self.number = {cell: x for x, cell in enumerate(cells)}
-        self.after = {
-            x: [self.number[self._step(lines, cell, move)] for move in MOVES]
-            for cell, x in self.number.items()
-        }
-        letters = {lines[2 * i + 1][4 * j + 2]: self.number[i, j] for i, j in cells}
-        self.goals = {letter: letters[letter] for letter in sorted(set(letters) - {"."})}
-        self.q = {letter: self._values(x) for letter, x in self.goals.items()}
-        self.goal, self.depth = goal, depth
-
-    @staticmethod
-    def _step(lines, cell, move):
-        (i, j), (di, dj) = cell, move
-        wall = lines[2 * i + 1 + di][4 * j + 2 + 2 * dj]
-        return cell if wall in "|-" else (i + di, j + dj)
-
-    def _values(self, goal):
-        """Q of a goal by value iteration."""
-        v = dict.fromkeys(self.after, 0.0)
-        for _ in range(600):
-            q = {
-                x: [(x == goal) + 0.9 * (0.15 * v[x] + 0.85 * v[y]) for y in after]
-                for x, after in self.after.items()
-            }
-            v = {x: max(values) for x, values in q.items()}
-        return q
-
-    def best(self, x):
-        values = self.q[self.goal][x]
-        return [a for a in range(4) if values[a] >= max(values) - 1e-9]
-
-    def updated(self, belief, x, a):
-        weight = {m: belief[m] * math.exp(0.5 * self.q[m][x][a]) for m in belief}
-        return {m: w / sum(weight.values()) for m, w in weight.items()}
-
-    def reward(self, belief):
-        return -math.sqrt(1 - belief[self.goal] ** 2)
-
-    def drawn_return(self, x, a, rng):
-        belief, total = dict.fromkeys(self.goals, 1 / len(self.goals)), 0.0
-        for k in range(self.depth):
-            if k:
-                best = self.best(x)
-                a = best[int(rng.random() * len(best))]
-            belief = self.updated(belief, x, a)
-            total += 0.9**k * self.reward(belief)
-            if x == self.goals[self.goal]:
-                break
-            if self.after[x][a] != x and rng.random() >= 0.15:
-                x = self.after[x][a]
-        return total
-
-    def search(self, x, simulations, rng):
-        q, n = [0.0] * 4, [1] * 4
-        for i in range(4 + simulations):
-            spread = [math.sqrt(2 * math.log(sum(n)) / n[a]) for a in range(4)]
-            index = [q[a] + q[a] * spread[a] for a in range(4)]
-            a = i if i < 4 else index.index(max(index))
-            n[a] += 1
-            q[a] += (self.drawn_return(x, a, rng) - q[a]) / n[a]
-        return q, n
-
-    def expected_return(self, x, a, belief=None, k=0):
-        """By enumerating every history."""
-        belief = self.updated(belief or dict.fromkeys(self.goals, 1 / len(self.goals)), x, a)
-        total = 0.9**k * self.reward(belief)
-        if x == self.goals[self.goal] or k + 1 == self.depth:
-            return total
-        for y, share in ((x, 0.15), (self.after[x][a], 0.85)):
-            best = self.best(y)
-            for following in best:
-                later = self.expected_return(y, following, belief, k + 1)
-                total += share / len(best) * later
-        return total
 
 
 def searched(text, goal, x, seed, **effort):
