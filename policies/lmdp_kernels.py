@@ -16,7 +16,7 @@ NONE = -1
 class World(NamedTuple):
     """What the search knows of maze, goal and observer.
 
-    `after[x, a]` is where an action leads, `likelihood[x, a, n]` the observer's pi_hat,
+    `after[x, a]` is where an action leads, `likelihood[x, a, n]` the observer's of a goal,
     `upto[x, a]` the rollout policy's cumulative probabilities, `goal` the index n.
     """
 

@@ -37,9 +37,7 @@ def play_and_measure(
     n = maze.goal_index(pair.goal)
     if framework == "lmdp":
         played = play_search(maze, pair, comparison, rng)
-        searching = BanditSearch(maze, pair.goal, LAST_SEARCH)
-        searching.run(int(played.rollout.states[-1]), None, rng)
-        last = int(searching.q.argmin())
+        last = search_once_more(maze, pair.goal, int(played.rollout.states[-1]), rng)
     else:
         began = perf_counter()
         values = goal_values(maze, GAMMA, ACTIONS)
@@ -52,6 +50,13 @@ def play_and_measure(
         rollout, last = roll_out(maze, policy, pair, rng)
         played = Played(rollout, goal_solves_s, perf_counter() - began - goal_solves_s)
     return played, measure(played.rollout, last, n, q, r_leg)
+
+
+def search_once_more(maze: Maze, goal: str, x: int, rng: np.random.Generator) -> int:
+    """The action that L-MDP takes where its play ended."""
+    searching = BanditSearch(maze, goal, LAST_SEARCH)
+    searching.run(x, None, rng)
+    return int(searching.q.argmin())
 
 
 def policy_of(q: Array) -> Array:

@@ -102,6 +102,16 @@ class TestByPlainPython:
         assert row["steps"] == len(states) - 1
         assert (row["polmdp"], row["lmdp"]) == pytest.approx(plain.measures(states, taken))
 
+    def test_that_search_has_1000_samples_of_depth_20(self):
+        """No return ends before its depth in a corridor; what is drawn next tells how many draws were."""
+        corridor = "+---" * 24 + "+\n| A   B " + "  . " * 22 + "|\n" + "+---" * 24 + "+\n"
+        rng, plains = np.random.default_rng(2021), np.random.default_rng(2021)
+        taken = authors.search_once_more(parse_maze(corridor), "A", 23, rng)
+        q, n = Plain(corridor, "A", depth=20).search(23, 1000, plains)
+        assert taken == q.index(min(q))
+        assert sum(n) == 8 + 1000
+        assert rng.random() == plains.random()
+
 
 class TestThePolicies:
     def test_values_within_1e_10_tie(self):
