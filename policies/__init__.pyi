@@ -8,8 +8,9 @@ from .errors import ModelError as ModelError
 from .errors import PolicyError as PolicyError
 from .errors import ResultError as ResultError
 from .errors import StimulusError as StimulusError
+from .experiments.comparison import Comparison as Comparison
+from .experiments.pairs_file import with_listed_pairs as with_listed_pairs
 from .experiments.publish import publish_comparison as publish_comparison
-from .experiments.scaling import Comparison as Comparison
 from .experiments.scaling import compare_frameworks as compare_frameworks
 from .experiments.scaling import open_comparison as open_comparison
 from .experiments.store import Store as Store
@@ -27,6 +28,7 @@ from .lmdp import SEARCHES as SEARCHES
 from .lmdp import Play as Play
 from .lmdp import Search as Search
 from .lmdp import play_lmdp as play_lmdp
+from .lmdp_bandit import Bandit as Bandit
 from .maze import ACTION_SETS as ACTION_SETS
 from .maze import FAILURE as FAILURE
 from .maze import Action as Action

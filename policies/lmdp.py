@@ -4,44 +4,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from scipy.special import softmax
 
 from policies.errors import ModelError
+from policies.lmdp_bandit import MOST_MOVES, Bandit, BanditSearch
 from policies.maze import ACTION_SETS, FAILURE, Maze
 from policies.mdp import Array
 from policies.measures import steps_allowed
-from policies.observer import OBSERVER_BETA, updated
+from policies.observer import OBSERVER_BETA, Distance, updated
 from policies.polmdp import ActionSet
 from policies.rollout import Rollout
-from policies.solvers import cells_after, distances, goal_values, shortest_path_policy
+from policies.searching import check_effort, in_chunks, search_world
+from policies.solvers import distances, goal_values, shortest_path_policy
 
-if TYPE_CHECKING:
-    from policies.lmdp_kernels import World
-
-StageCost = Literal["tv", "euclid", "kl", "reported"]
 Rollouts = Literal["optimal", "random"]
 Ending = Literal["arrived", "step limit", "time limit"]
-
-STEPS_BETWEEN_LOOKS = 10_000
-"""Simulated steps between two looks at the clock: about a millisecond."""
 
 
 @dataclass(frozen=True)
 class Search:
     """Parameters of the search; the defaults are Miura, Cohen & Zilberstein (RO-MAN 2021).
 
-    distance: of a stage's belief, one of belief_distance or sqrt(1 - b(g)^2) (`reported`).
-    task: added to it for each step. simulations, depth: of each real step. exploration: UCB1's c.
-    rollouts: the policy that values a new leaf. gamma: discount of the goals' MDPs; the search
-    itself is bounded by its depth alone (discounted it loiters). beta: the observer's.
-    root_only: no tree, a bandit of the next actions. forgets: every step is planned from the
-    uniform belief. time_limit_s: of a whole play.
+    distance: of a stage's belief, one of belief_distance. task: added to it for each step.
+    simulations, depth: of each real step. exploration: UCB1's c. rollouts: the policy that values
+    a new leaf. gamma: discount of the goals' MDPs; the search itself is bounded by its depth
+    alone (discounted it loiters). beta: the observer's. time_limit_s: of a whole play.
     """
 
-    distance: StageCost = "tv"
+    distance: Distance = "tv"
     task: float = 0.1
     simulations: int = 10_000
     depth: int = 30
@@ -50,14 +43,10 @@ class Search:
     gamma: float = 0.9
     beta: float = OBSERVER_BETA
     actions: ActionSet = "udlrn"
-    root_only: bool = False
-    forgets: bool = False
     time_limit_s: float = np.inf
 
     def __post_init__(self) -> None:
-        for name in ("simulations", "depth"):
-            if getattr(self, name) < 1:
-                raise ModelError(f"expected {name} of at least 1, came {getattr(self, name)}")
+        check_effort(self.simulations, self.depth, self.time_limit_s)
         for name in ("task", "exploration"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0):
@@ -66,10 +55,8 @@ class Search:
             raise ModelError(f"expected a finite beta above 0, came {self.beta}")
         if not 0 <= self.gamma < 1:
             raise ModelError(f"expected gamma in [0, 1), came {self.gamma}")
-        if not self.time_limit_s > 0:
-            raise ModelError(f"expected a time limit above 0 s, came {self.time_limit_s}")
         for name, allowed in (
-            ("distance", get_args(StageCost)),
+            ("distance", get_args(Distance)),
             ("rollouts", get_args(Rollouts)),
             ("actions", get_args(ActionSet)),
         ):
@@ -78,13 +65,8 @@ class Search:
                 raise ModelError(f"expected {name} in {', '.join(allowed)}; came {value!r}")
 
 
-SEARCHES: Mapping[str, Search] = MappingProxyType(
-    {
-        "miura": Search(),
-        "as_reported": Search(
-            distance="reported", task=0.0, depth=10, root_only=True, forgets=True
-        ),
-    }
+SEARCHES: Mapping[str, Search | Bandit] = MappingProxyType(
+    {"miura": Search(), "as_reported": Bandit()}
 )
 """Both modes: the algorithm as published, and as the authors of PoLMDP ran it as a baseline."""
 
@@ -106,66 +88,53 @@ class Play:
 
 
 class TreeSearch:
-    """The search for one goal of a maze, ready to run from any state and belief."""
+    """The tree search for one goal of a maze, ready to run from any state and belief."""
 
     def __init__(self, maze: Maze, goal: str, search: Search) -> None:
         # Compiled code loads late: only who searches waits for it.
-        from policies import lmdp_kernels
+        from policies import lmdp_kernels as kernels
 
-        self.kernels, self.search, self.goal_state = lmdp_kernels, search, maze.goals[goal]
+        self.kernels, self.search, self.actions = kernels, search, ACTION_SETS[search.actions]
         began = perf_counter()
-        self.world = self._world(maze, maze.goal_index(goal))
+        q = goal_values(maze, search.gamma, self.actions)
+        if search.rollouts == "optimal":
+            policy = shortest_path_policy(maze, maze.goals[goal], self.actions)
+        else:
+            policy = np.full(q.shape[1:], 1 / len(self.actions))
+        likelihood = softmax(search.beta * q, axis=2)
+        self.world = search_world(maze, goal, self.actions, likelihood, policy)
         self.solve_time_s = perf_counter() - began
-        A, N = self.world.likelihood.shape[1:]
-        self.costs = lmdp_kernels.Costs(get_args(StageCost).index(search.distance), search.task)
-        self.tree = lmdp_kernels.empty_tree(search.simulations + 1, A, N)
-        self.prior = np.full(N, 1 / N)
+        N, _, A = q.shape
+        self.costs = kernels.Costs(get_args(Distance).index(search.distance), search.task)
+        self.tree = kernels.empty_tree(search.simulations + 1, A, N)
         # Compiled here, before the clock of a play's search runs.
         rng = np.random.default_rng(0)
-        self.run(self.goal_state, self.prior, rng, until=-np.inf)
+        self.run(self.world.goal_state, np.full(N, 1 / N), rng, until=-np.inf)
         self._simulate(0, rng)
 
+    @property
+    def q(self) -> Array:
+        """The cost of each action at the root of the last run; the least is taken."""
+        q: Array = self.tree.q[0]
+        return q
+
     def run(self, x: int, belief: Array, rng: np.random.Generator, until: float = np.inf) -> int:
-        """Search from a state and belief (N,); the cost of each action is in `tree.q[0]`.
+        """Search from a state and belief (N,).
 
         Ends early when perf_counter() passes `until`; returns the simulations run.
         """
         self.kernels.plant(self.tree, self.world, self.costs, x, belief)
-        done, chunk = 0, max(1, STEPS_BETWEEN_LOOKS // self.search.depth)
-        while done < self.search.simulations and perf_counter() < until:
-            chunk = min(chunk, self.search.simulations - done)
-            self._simulate(chunk, rng)
-            done += chunk
-        return done
+        return in_chunks(
+            self.search.simulations,
+            self.search.depth,
+            until,
+            lambda simulations: self._simulate(simulations, rng),
+        )
 
     def _simulate(self, simulations: int, rng: np.random.Generator) -> None:
         how = self.search
         self.kernels.simulate(
-            self.tree,
-            self.world,
-            self.costs,
-            how.depth,
-            how.exploration,
-            how.root_only,
-            simulations,
-            rng,
-        )
-
-    def _world(self, maze: Maze, n: int) -> "World":
-        actions = ACTION_SETS[self.search.actions]
-        q = goal_values(maze, self.search.gamma, actions)
-        if self.search.rollouts == "optimal":
-            policy = shortest_path_policy(maze, self.goal_state, actions)
-        else:
-            policy = np.full(q.shape[1:], 1 / len(actions))
-        upto = policy.cumsum(axis=1)
-        return self.kernels.World(
-            cells_after(maze, actions),
-            np.ascontiguousarray(softmax(self.search.beta * q, axis=2).transpose(1, 2, 0)),
-            upto / upto[:, -1:],
-            n,
-            self.goal_state,
-            FAILURE,
+            self.tree, self.world, self.costs, how.depth, how.exploration, simulations, rng
         )
 
 
@@ -174,34 +143,42 @@ def play_lmdp(
     start: int,
     goal: str,
     rng: np.random.Generator,
-    search: Search = SEARCHES["miura"],
+    search: Search | Bandit = SEARCHES["miura"],
+    most_moves: int | None = None,
 ) -> Play:
-    """Plan and act step by step until the goal, the steps allowed (4 x distance / .85) or time.
+    """Plan and act step by step until the goal, `most_moves` or the time limit.
 
-    The time limit covers solving and searching, not the compiling of the search on first use;
-    the same seed gives the same play wherever the limit is not reached.
+    `most_moves` is 4 x distance / .85 if not said, for a Bandit 502. The time limit covers
+    solving and searching, not the compiling of the search on first use; the same seed gives the
+    same play wherever the limit is not reached.
     ModelError for a start outside the maze, MazeError for an unknown goal.
     """
     n = maze.goal_index(goal)
     if not 0 <= start < maze.states:
         raise ModelError(f"expected a start from 0 to {maze.states - 1}, came {start}")
-    allowed = steps_allowed(float(distances(maze)[n, start]))
-    searching = TreeSearch(maze, goal, search)
-    world, tree = searching.world, searching.tree
+    searching: TreeSearch | BanditSearch
+    if isinstance(search, Bandit):
+        searching, allowed = BanditSearch(maze, goal, search), MOST_MOVES
+    else:
+        searching = TreeSearch(maze, goal, search)
+        allowed = steps_allowed(float(distances(maze)[n, start]))
+    allowed = most_moves or allowed
+    world = searching.world
     began = perf_counter()
     until = began + search.time_limit_s - searching.solve_time_s
-    states, taken, beliefs, simulations = [start], list[int](), [searching.prior], 0
+    N = len(maze.goals)
+    states, taken, beliefs, simulations = [start], list[int](), [np.full(N, 1 / N)], 0
     while states[-1] != world.goal_state and len(taken) < allowed:
-        x, belief = states[-1], beliefs[-1]
-        done = searching.run(x, searching.prior if search.forgets else belief, rng, until)
+        x = states[-1]
+        done = searching.run(x, beliefs[-1], rng, until)
         simulations += done
         if done < search.simulations:
             break
-        a = int(tree.q[0].argmin())
+        a = int(searching.q.argmin())
         fails = rng.random() < FAILURE
         taken.append(a)
         states.append(x if fails else int(world.after[x, a]))
-        beliefs.append(updated(belief, world.likelihood[x, a]))
+        beliefs.append(updated(beliefs[-1], world.likelihood[x, a]))
     search_time_s = perf_counter() - began
     arrived = states[-1] == world.goal_state
     gave_up: Ending = "step limit" if len(taken) == allowed else "time limit"

@@ -1,4 +1,4 @@
-"""Compiled tree search over (state, belief); only lmdp.py imports this, late."""
+"""Compiled tree search over (state, belief); loaded late, by who searches."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from policies.mdp import Array
 
-TV, EUCLID, KL, REPORTED = range(4)
+TV, EUCLID, KL = range(3)
 LEAST_BELIEF = np.finfo(np.float64).tiny
 NONE = -1
 
@@ -16,7 +16,7 @@ NONE = -1
 class World(NamedTuple):
     """What the search knows of maze, goal and observer.
 
-    `after[x, a]` is where an action leads, `likelihood[x, a, n]` the observer's pi_hat,
+    `after[x, a]` is where an action leads, `likelihood[x, a, n]` the observer's of a goal,
     `upto[x, a]` the rollout policy's cumulative probabilities, `goal` the index n.
     """
 
@@ -80,11 +80,10 @@ def simulate(
     costs: Costs,
     depth: int,
     exploration: float,
-    root_only: bool,
     simulations: int,
     rng: np.random.Generator,
 ) -> None:
-    """Run UCT simulations from the root; with `root_only` it stays a bandit of the root's actions.
+    """Run UCT simulations from the root.
 
     Each descends to a node not seen before, values it by a rollout and backs the cost of the
     `depth` stages up (Kocsis & Szepesvari 2006). The cost of being at the root is left out of `q`.
@@ -111,7 +110,7 @@ def simulate(
             h += 1
             if y == world.goal_state or h == depth:
                 break
-            if new or root_only:
+            if new:
                 belief[:] = tree.belief[j]
                 after = rollout_cost(world, costs, y, belief, depth - h, rng)
                 break
@@ -205,9 +204,7 @@ def stage_cost(world: World, costs: Costs, x: int, belief: Array) -> float:
             if n != world.goal:
                 squares += belief[n] ** 2
         far = np.sqrt(squares)
-    elif costs.distance == KL:
-        far = -np.log(max(certain, LEAST_BELIEF))
     else:
-        far = np.sqrt(max(0.0, 1 - certain**2))
+        far = -np.log(max(certain, LEAST_BELIEF))
     cost: float = far + costs.task
     return cost

@@ -8,12 +8,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from policies.experiments.frameworks import FRAMEWORKS
-from policies.experiments.tables import SELECTIONS, Tables, worlds_of
+from policies.experiments.tables import SELECTIONS, Tables, frameworks_of, worlds_of
 from policies.pool_sheet import COLOURS as POLICY_COLOURS
 
-COLOURS = {**POLICY_COLOURS, "lmdp": "#009e73"}
-NAMES = {"polmdp": "PoLMDP", "lmdp": "L-MDP", "optimal": "optimal policy"}
+COLOURS = {
+    **POLICY_COLOURS,
+    "polmdp_proper_posterior": "#cc79a7",
+    "polmdp_advantage": "#56b4e9",
+    "lmdp": "#009e73",
+}
+NAMES = {
+    "polmdp": "PoLMDP",
+    "polmdp_proper_posterior": "PoLMDP (proper posterior)",
+    "polmdp_advantage": "PoLMDP (advantage)",
+    "lmdp": "L-MDP",
+    "optimal": "optimal policy",
+}
 LABELS = {
     "polmdp": "PoLMDP measure,\ndiscounted sum",
     "polmdp_per_step": "PoLMDP measure,\nmean per step",
@@ -82,7 +92,7 @@ def figure_data(name: str, tables: Tables) -> pl.DataFrame:
 def _draw_means(axes: Axes, shown: pl.DataFrame, worlds: pl.DataFrame) -> None:
     """A line a framework with its 95 % band; nothing where balancing kept no pair."""
     places = _name_worlds(axes, worlds)
-    for framework in FRAMEWORKS:
+    for framework in frameworks_of(shown):
         points = shown.filter(pl.col("framework") == framework)
         if points["n"].max() == 0:
             axes.text(0.5, 0.5, "no pairs", ha="center", transform=axes.transAxes)
@@ -98,7 +108,7 @@ def _draw_failures(axes: Axes, failures: pl.DataFrame, worlds: pl.DataFrame) -> 
     """Dashed: share that did not arrive; dotted: share that timed out."""
     places = _name_worlds(axes, worlds)
     for column, dashes in (("not_arrived", "--"), ("timed_out", ":")):
-        for framework in FRAMEWORKS:
+        for framework in frameworks_of(failures):
             points = failures.filter(pl.col("framework") == framework)
             share = 100 * points[column] / points["runs"]
             label = f"{NAMES[framework]}, {column.replace('_', ' ')}"

@@ -4,18 +4,18 @@ from functools import partial
 from pathlib import Path
 
 from policies.command_line import write_whole
+from policies.experiments.comparison import Comparison
 from policies.experiments.figures import FIGURES, draw_figure, figure_data
 from policies.experiments.images import draw_images
 from policies.experiments.reading import write_means, write_reading
-from policies.experiments.scaling import Comparison
 from policies.experiments.tables import make_tables, read_rows
 
 
 def publish_comparison(file: Path, comparison: Comparison) -> str:
     """Write all that is made from the rows in `file` beside it; returns the reading (Markdown).
 
-    `<test>-means.csv`, `-failures.csv`, `-differences.csv`, `-ratios.csv`; of each figure .svg,
-    .png and .csv; and `<test>.md`.
+    `<name>-means.csv`, `-failures.csv`, `-differences.csv`, `-ratios.csv`; of each figure .svg,
+    .png and .csv; and `<name>.md`.
     """
     tables = make_tables(read_rows(file), comparison.seed)
     reading = write_reading(comparison, tables)

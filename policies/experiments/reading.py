@@ -5,10 +5,15 @@ from typing import Any
 
 import polars as pl
 
+from policies.experiments.comparison import Comparison
 from policies.experiments.figures import FIGURES, NAMES
-from policies.experiments.frameworks import FRAMEWORKS
-from policies.experiments.scaling import Comparison
-from policies.experiments.tables import CONTRASTS, SELECTIONS, Tables, worlds_of
+from policies.experiments.tables import (
+    SELECTIONS,
+    Tables,
+    contrasts_of,
+    frameworks_of,
+    worlds_of,
+)
 
 ALPHA = 0.05
 MEASURED = {
@@ -26,11 +31,9 @@ def write_reading(comparison: Comparison, tables: Tables) -> str:
     """The reading as Markdown."""
     return "\n".join(
         [
-            f"# Frameworks compared: {comparison.test}",
+            f"# Frameworks compared: {comparison.name}",
             "",
-            f"Seed {comparison.seed}, {comparison.pairs} pairs of start and goal a world, PoLMDP "
-            f"with the paper's preset and four moves, L-MDP in mode `{comparison.mode}` with "
-            f"{comparison.simulations:,} simulations a step and {comparison.limit_s:g} s a pair.",
+            _design(comparison),
             "",
             "## What the measures show",
             "",
@@ -46,7 +49,7 @@ def write_reading(comparison: Comparison, tables: Tables) -> str:
             "",
             "## Who arrived",
             "",
-            *_failures(tables),
+            *_failures(comparison, tables),
             "",
             *_about_failures(comparison, tables),
             "",
@@ -62,11 +65,32 @@ def write_means(comparison: Comparison, tables: Tables) -> str:
             "",
             _FINE_PRINT,
             "",
-            *(f"![Figure: {name}]({comparison.test}-figure-{name}.svg)" for name in FIGURES),
+            *(f"![Figure: {name}]({comparison.name}-figure-{name}.svg)" for name in FIGURES),
             "",
             *(line for selection in SELECTIONS for line in _means(tables, selection)),
         ]
     )
+
+
+def _design(comparison: Comparison) -> str:
+    """What was run, every choice of it."""
+    pairs = "listed pairs" if comparison.pairs is None else f"{comparison.pairs} pairs"
+    polmdp, variants = comparison.measured_by, comparison.polmdps.values()
+    far = "sqrt(1 - b(g)^2)" if comparison.distance == "reported" else f"`{comparison.distance}`"
+    chosen = [
+        f"Seed {comparison.seed}, {pairs} of start and goal a world; actions `{polmdp.actions}`, "
+        f"gamma {polmdp.gamma:g}, at most {_moves(comparison)}.",
+        f"PoLMDP with beta {polmdp.beta:g}, formulation `{polmdp.formulation}`"
+        f"{', guarded' if polmdp.guard else ''}, r_leg "
+        f"{', '.join(f'`{variant.variant}`' for variant in variants)}; the PoLMDP measure sums "
+        f"r_leg `{polmdp.variant}` for all.",
+        f"L-MDP in mode `{comparison.mode}` with {comparison.simulations:,} simulations a step and "
+        f"{comparison.limit_s:g} s a pair; the L-MDP measure's distance is {far}, the beta of its "
+        f"observer {comparison.observer_beta:g}.",
+    ]
+    if comparison.preset:
+        chosen.append(f"All this and what has no name is settled by preset `{comparison.preset}`.")
+    return " ".join(chosen)
 
 
 _FINE_PRINT = (
@@ -82,7 +106,7 @@ _FINE_PRINT = (
 def _leads(tables: Tables, measure: str) -> str:
     """For each pair of frameworks: who leads in which worlds, by how much, and where nobody."""
     lines = [f"**{MEASURED[measure]}.**"]
-    for framework, against in CONTRASTS:
+    for framework, against in contrasts_of(tables.means):
         tests = tables.differences.filter(
             pl.col("selection") == "all",
             pl.col("measure") == measure,
@@ -109,60 +133,71 @@ def _named(tests: Iterable[dict[str, Any]]) -> str:
 
 
 def _time(tables: Tables) -> list[str]:
-    rows = [
-        (str(world), f"{with_solves:,.3g}", f"{alone:,.3g}")
-        for world, _, _, with_solves, alone in tables.ratios.iter_rows()
-    ]
-    lead = "Mean time of L-MDP over that of PoLMDP, all runs (a timed out one until its limit)."
     heads = ("world", "goals' solves included", "planning alone")
-    return [lead, "", *_table(heads, rows)]
+    lines = []
+    for framework in frameworks_of(tables.ratios):
+        rows = [
+            (row["world"], f"{row['time_ratio']:,.3g}", f"{row['planning_ratio']:,.3g}")
+            for row in tables.ratios.filter(framework=framework).iter_rows(named=True)
+        ]
+        lead = f"Mean time of L-MDP over that of {NAMES[framework]}, all runs (a timed out one "
+        lines += [f"{lead}until its limit).", "", *_table(heads, rows), ""]
+    return lines[:-1]
 
 
-def _failures(tables: Tables) -> list[str]:
+def _failures(comparison: Comparison, tables: Tables) -> list[str]:
     """A row a world: of each framework, how many runs did not arrive and how many timed out."""
-    rows = []
+    frameworks, rows = frameworks_of(tables.failures), []
     for world in worlds_of(tables.failures)["world"]:
         of_it = tables.failures.filter(pl.col("world") == world)
         cells = []
-        for framework in FRAMEWORKS:
+        for framework in frameworks:
             each = of_it.row(by_predicate=pl.col("framework") == framework, named=True)
             cells.append(f"{each['not_arrived']} + {each['timed_out']} of {each['runs']}")
         rows.append((world, *cells))
     return [
-        "Runs that did not arrive within 4 x distance / .85 steps + runs that timed out.",
+        f"Runs that did not arrive within {_moves(comparison)} + runs that timed out.",
         "",
-        *_table(("world", *(NAMES[f] for f in FRAMEWORKS)), rows),
+        *_table(("world", *(NAMES[framework] for framework in frameworks)), rows),
     ]
 
 
 def _about_failures(comparison: Comparison, tables: Tables) -> list[str]:
-    """What kind of failures there were, beside what is known of them."""
+    """What kind of failures there were: this run's, no other's."""
     counted = tables.failures.group_by("framework").agg(pl.col("not_arrived", "timed_out").sum())
     kinds = {framework: (lost, late) for framework, lost, late in counted.iter_rows()}
     lost, late = kinds["lmdp"]
-    loitered, _ = kinds["polmdp"]
     said = []
-    if loitered:
-        said.append(
-            f"PoLMDP's {loitered} failures loitered where r_leg is high: positive rewards and a "
-            "goal that does not end the task promise no arrival. The paper counts timeouts only."
-        )
+    for framework, parameters in comparison.polmdps.items():
+        loitered, _ = kinds[framework]
+        if loitered and parameters.formulation == "reward" and not parameters.guard:
+            said.append(
+                f"{NAMES[framework]}'s {loitered} failures loitered where r_leg is high: positive "
+                "rewards and a goal that does not end the task promise no arrival. The paper "
+                "counts timeouts only."
+            )
     if lost + late == 0:
         return [*said, "L-MDP did not fail."]
-    return [
-        *said,
+    said.append(
         f"Of L-MDP's {lost + late} failures {late} are of time and {lost} of wandering: it went "
-        "on acting and did not get there. As the paper's authors ran the baseline (mode "
-        "`as_reported`) it missed the goal in 4.4, 12 and 50 % of runs on 5x8, 10x10 and 25x25 "
-        "when this was looked into, and the paper reports 4, 13 and 45 % failures on like mazes: "
-        "they look like wandering under a reward of belief alone, not like the hardness of "
-        "POMDPs. With a task cost and a deeper search (mode `miura`) 100, 100 and 93 % arrived "
-        f"there. This run is in mode `{comparison.mode}`.",
-    ]
+        "on acting and did not get there."
+    )
+    if comparison.mode == "as_reported":
+        said.append(
+            "Mode `as_reported` is the baseline as the paper's authors ran it: a bandit of the "
+            "next actions, whose index explores the wrong way, with the belief forgotten at every "
+            "step. Its wandering says nothing of how hard POMDPs are."
+        )
+    return said
+
+
+def _moves(comparison: Comparison) -> str:
+    """Within what a run must have arrived."""
+    return f"{comparison.most_moves or '4 x distance / .85'} moves"
 
 
 def _means(tables: Tables, selection: str) -> list[str]:
-    lines = []
+    frameworks, lines = frameworks_of(tables.means), []
     for measure, name in {**MEASURED, "time_s": "Time to a plan, s"}.items():
         shown = tables.means.filter(pl.col("selection") == selection, pl.col("measure") == measure)
         rows = []
@@ -170,10 +205,10 @@ def _means(tables: Tables, selection: str) -> list[str]:
             of_it = shown.filter(pl.col("world") == world)
             cells = (
                 of_it.row(by_predicate=pl.col("framework") == framework, named=True)
-                for framework in FRAMEWORKS
+                for framework in frameworks
             )
             rows.append((world, *(_interval(cell) for cell in cells)))
-        heads = ("world", *(NAMES[framework] for framework in FRAMEWORKS))
+        heads = ("world", *(NAMES[framework] for framework in frameworks))
         lines += [f"{name}, {SELECTED[selection]} (n):", "", *_table(heads, rows), ""]
     return lines
 

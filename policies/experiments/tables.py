@@ -1,15 +1,15 @@
 """The tables of the framework comparison, from its rows: means, failures, paired differences."""
 
 from dataclasses import asdict, dataclass
+from itertools import combinations
 from pathlib import Path
 
 import polars as pl
 
 from policies.experiments.balance import balanced
-from policies.experiments.frameworks import FRAMEWORKS
+from policies.experiments.comparison import FRAMEWORKS, POLMDPS
 from policies.experiments.paired import PairedTest, holm, mean_interval, paired_test
 
-CONTRASTS = (("polmdp", "lmdp"), ("polmdp", "optimal"), ("lmdp", "optimal"))
 SELECTIONS = ("balanced", "all")
 MEASURES = ("polmdp", "polmdp_per_step", "lmdp", "time_s", "planning_s")
 """Columns of the rows that have means; `time_s` is the planning with the goal MDPs' solves."""
@@ -24,8 +24,8 @@ class Tables:
     means: n, mean and 95 % interval of each selection, measure and framework. failures: of all
     runs, how many timed out, and how many of the others did not arrive. differences: of each
     selection and measure, framework minus `against` over the pairs that both finished, Holm's
-    correction over the worlds. ratios: mean time of L-MDP over that of PoLMDP, with and without
-    the goals' solves, over all runs: one that timed out counts with the time it had.
+    correction over the worlds. ratios: mean time of L-MDP over that of each PoLMDP, with and
+    without the goals' solves, over all runs: one that timed out counts with the time it had.
     """
 
     means: pl.DataFrame
@@ -61,10 +61,21 @@ def worlds_of(rows: pl.DataFrame) -> pl.DataFrame:
     return rows.select(_WORLD).unique(maintain_order=True)
 
 
+def frameworks_of(rows: pl.DataFrame) -> list[str]:
+    """The frameworks of rows or of a table, in the order of FRAMEWORKS."""
+    there = set(rows["framework"])
+    return [framework for framework in FRAMEWORKS if framework in there]
+
+
+def contrasts_of(rows: pl.DataFrame) -> list[tuple[str, str]]:
+    """Every two frameworks of rows or of a table, the earlier one first."""
+    return list(combinations(frameworks_of(rows), 2))
+
+
 def _means(finished: pl.DataFrame, selection: str, rows: pl.DataFrame) -> pl.DataFrame:
     table = []
     for world in worlds_of(rows).iter_rows(named=True):
-        for framework in FRAMEWORKS:
+        for framework in frameworks_of(rows):
             of_it = finished.filter(world=world["world"], framework=framework)
             for measure in MEASURES:
                 mean = asdict(mean_interval(of_it[measure].to_numpy()))
@@ -83,22 +94,26 @@ def _failures(rows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _ratios(rows: pl.DataFrame) -> pl.DataFrame:
-    def ratio(measure: str) -> pl.Expr:
-        lmdp, polmdp = (
-            pl.col(measure).filter(framework=framework).mean() for framework in ("lmdp", "polmdp")
-        )
-        return lmdp / polmdp
-
-    return rows.group_by(*_WORLD, maintain_order=True).agg(
-        time_ratio=ratio("time_s"), planning_ratio=ratio("planning_s")
+    times = rows.group_by(*_WORLD, "framework", maintain_order=True).agg(
+        pl.col("time_s", "planning_s").mean()
+    )
+    lmdp = times.filter(framework="lmdp").drop("framework")
+    polmdps = times.filter(pl.col("framework").is_in(list(POLMDPS.values())))
+    return polmdps.join(lmdp, on=_WORLD, suffix="_lmdp", maintain_order="left").select(
+        *_WORLD,
+        "framework",
+        time_ratio=pl.col("time_s_lmdp") / pl.col("time_s"),
+        planning_ratio=pl.col("planning_s_lmdp") / pl.col("planning_s"),
     )
 
 
 def _differences(finished: pl.DataFrame, selection: str, rows: pl.DataFrame) -> pl.DataFrame:
     table = []
     for measure in MEASURES:
-        by_pair = finished.pivot("framework", FRAMEWORKS, index=["world", "pair"], values=measure)
-        for framework, against in CONTRASTS:
+        by_pair = finished.pivot(
+            "framework", frameworks_of(rows), index=["world", "pair"], values=measure
+        )
+        for framework, against in contrasts_of(rows):
             both = by_pair.drop_nulls([framework, against])
             tests = []
             for world in worlds_of(rows).iter_rows(named=True):

@@ -17,14 +17,6 @@ STATE_SIZES = ((5, 8), (10, 10), (25, 25), (40, 40), (50, 50), (60, 60), (75, 75
 MANY_GOALS, FEW_GOALS = 6, 3
 
 
-@dataclass(frozen=True, eq=False)
-class World:
-    """A maze under a name that tables and figures show."""
-
-    name: str
-    maze: Maze
-
-
 @dataclass(frozen=True)
 class Pair:
     """The `number`-th start state and goal letter of a world."""
@@ -32,6 +24,15 @@ class Pair:
     number: int
     start: int
     goal: str
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """A maze under a name that tables and figures show; `pairs` are those of a file, if any."""
+
+    name: str
+    maze: Maze
+    pairs: tuple[Pair, ...] | None = None
 
 
 def drawn_worlds(test: Test, seed: int) -> list[World]:

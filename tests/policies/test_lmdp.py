@@ -11,7 +11,6 @@ from joblib import Parallel, delayed
 
 from policies import (
     ACTION_SETS,
-    SEARCHES,
     MazeError,
     ModelError,
     Search,
@@ -24,6 +23,7 @@ from policies import (
     shortest_path_policy,
 )
 from policies import lmdp as lmdp_module
+from policies import searching as searching_module
 
 ACTIONS = ACTION_SETS["udlrn"]
 QUICK = Search(simulations=300)
@@ -53,12 +53,10 @@ def same(one, other) -> bool:
 
 
 class TestAPlay:
-    @pytest.mark.parametrize("mode", SEARCHES)
     @pytest.mark.parametrize("seed", range(5))
-    def test_its_beliefs_are_those_of_the_observer_who_sees_the_actions(self, mode, seed):
-        maze, start, letter = draw_pair(5, 8, 3, seed)
-        search = replace(SEARCHES[mode], simulations=200)
-        played = play_lmdp(maze, start, letter, np.random.default_rng(seed), search)
+    def test_its_beliefs_are_those_of_the_observer_who_sees_the_actions(self, seed):
+        maze, _, _ = draw_pair(5, 8, 3, seed)
+        played = play(5, 8, 3, seed)
         q = goal_values(maze, 0.9, ACTIONS)
         way = played.rollout
         seen = action_beliefs(maze, q, way.states, way.actions, ACTIONS)
@@ -89,6 +87,11 @@ class TestAPlay:
             False,
         )
 
+    def test_it_gives_up_after_the_moves_that_are_asked_for(self):
+        maze, start, letter = draw_pair(10, 10, 6, 3)
+        played = play_lmdp(maze, start, letter, np.random.default_rng(3), QUICK, most_moves=2)
+        assert (played.ended, played.rollout.steps) == ("step limit", 2)
+
     def test_a_goal_entered_with_the_last_step_allowed_counts(self, monkeypatch):
         steps = play(5, 8, 3, 0).rollout.steps
         monkeypatch.setattr(lmdp_module, "steps_allowed", lambda _: steps)
@@ -110,7 +113,8 @@ class TestAPlay:
 class TestTimeLimit:
     def test_the_clock_is_looked_at_within_every_10_000_simulated_steps(self, monkeypatch):
         looks = count()
-        monkeypatch.setattr(lmdp_module, "perf_counter", lambda: next(looks) * 1e-3)
+        for module in (lmdp_module, searching_module):
+            monkeypatch.setattr(module, "perf_counter", lambda: next(looks) * 1e-3)
         search = Search(simulations=10**5, depth=20, time_limit_s=0.05)
         played = play(25, 25, 6, 4, search)
         # Each look costs a millisecond of this clock and is followed by 500 simulations.
@@ -132,7 +136,7 @@ class TestTimeLimit:
         assert same(play(5, 8, 3, 2), play(5, 8, 3, 2, replace(QUICK, time_limit_s=3600)))
 
 
-class TestModes:
+class TestSearching:
     def test_miura_beats_the_optimal_policy_on_its_own_measure_and_arrives(self):
         gained, arrived = [], 0
         for seed in range(60):
@@ -153,14 +157,10 @@ class TestModes:
     def test_miura_nearly_always_arrives_in_small_mazes(self):
         assert sum(play(5, 8, 3, seed).rollout.arrived for seed in range(100)) >= 98
 
-    def test_miura_arrives_in_large_mazes_where_as_reported_wanders(self):
-        def arrivals(mode: str) -> int:
-            search = replace(SEARCHES[mode], simulations=1000)
-            return sum(play(25, 25, 6, seed, search).rollout.arrived for seed in range(30))
-
-        # Of plays that arrive in 93 %, fewer than 24 of 30 come once in 300 times.
-        assert arrivals("miura") >= 24
-        assert arrivals("as_reported") <= 21
+    def test_miura_arrives_in_large_mazes(self):
+        search = replace(QUICK, simulations=1000)
+        # Seeds are fixed; a search that wanders arrives in few of these.
+        assert sum(play(25, 25, 6, seed, search).rollout.arrived for seed in range(30)) >= 24
 
 
 class TestBadInput:
@@ -174,7 +174,7 @@ class TestBadInput:
             ({"beta": 0.0}, "finite beta above 0, came 0.0"),
             ({"gamma": 1.0}, r"gamma in \[0, 1\), came 1.0"),
             ({"time_limit_s": 0.0}, "time limit above 0 s, came 0.0"),
-            ({"distance": "far"}, "distance in tv, euclid, kl, reported; came 'far'"),
+            ({"distance": "far"}, "distance in tv, euclid, kl; came 'far'"),
             ({"rollouts": "good"}, "rollouts in optimal, random; came 'good'"),
             ({"actions": "lr"}, "actions in udlr, udlrn; came 'lr'"),
         ],

@@ -1,11 +1,29 @@
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from policies import ModelError, ResultError, random_maze
-from policies.experiments.frameworks import FRAMEWORKS
-from policies.experiments.scaling import COLUMNS, Comparison, compare_frameworks, open_comparison
+from policies import (
+    ACTION_SETS,
+    ModelError,
+    ResultError,
+    action_beliefs,
+    goal_values,
+    legible_rewards,
+    measure_legibility,
+    plan_legible,
+    random_maze,
+)
+from policies.experiments import frameworks, scaling
+from policies.experiments.comparison import Comparison, design_comparison
+from policies.experiments.frameworks import play
+from policies.experiments.scaling import (
+    COLUMNS,
+    compare_frameworks,
+    open_comparison,
+    play_pair,
+)
 from policies.experiments.tables import read_rows
 from policies.experiments.worlds import World, draw_pairs, drawn_worlds
 
@@ -40,11 +58,13 @@ def untimed(file):
 def test_every_framework_plays_every_pair_once(worlds, serial):
     rows = untimed(serial)
     played = [(row["world"], int(row["pair"]), row["framework"]) for row in rows]
-    wanted = [(w.name, pair, f) for w in worlds for pair in range(4) for f in sorted(FRAMEWORKS)]
+    wanted = [
+        (w.name, pair, f) for w in worlds for pair in range(4) for f in sorted(SMALL.frameworks)
+    ]
     assert played == wanted
     for world in worlds:
         pairs = [(p.start, p.goal) for p in draw_pairs(world, 4, SMALL.seed)]
-        for framework in FRAMEWORKS:
+        for framework in SMALL.frameworks:
             of_it = [r for r in rows if (r["world"], r["framework"]) == (world.name, framework)]
             assert [(int(row["start"]), row["goal"]) for row in of_it] == pairs
 
@@ -134,16 +154,81 @@ def test_a_pair_that_runs_out_of_time_says_so(worlds, tmp_path):
     assert late["failed"].all()
 
 
-@pytest.mark.parametrize(
-    ("wrong", "said"),
-    [
-        ({"test": "walls"}, "expected a test in goals, states; came 'walls'"),
-        ({"pairs": 0}, "expected at least 1 pair a world, came 0"),
-        ({"mode": "x"}, "expected mode in miura, as_reported; came 'x'"),
-        ({"simulations": 0}, "expected simulations of at least 1"),
-        ({"limit_s": 0}, "expected a time limit above 0 s"),
-    ],
-)
-def test_what_cannot_be_run_is_refused(wrong, said):
-    with pytest.raises(ModelError, match=said):
-        Comparison(**{"test": "goals", **wrong})
+class TestTheChoices:
+    CHOSEN = design_comparison(
+        variants=["advantage", "proper_posterior"],
+        beta=0.8,
+        gamma=0.7,
+        actions="udlrn",
+        guard=True,
+        distance="kl",
+        observer_beta=2.0,
+        simulations=5,
+    )
+
+    def rows(self, world, comparison):
+        return play_pair(world, draw_pairs(world, 1, 1)[0], comparison.frameworks, comparison)
+
+    def test_reach_every_measure(self, worlds, monkeypatch):
+        ways = {}
+
+        def heard(framework, maze, pair, comparison, rng):
+            ways[framework] = play(framework, maze, pair, comparison, rng)
+            return ways[framework]
+
+        monkeypatch.setattr(scaling, "play", heard)
+        maze, actions = worlds[1].maze, ACTION_SETS["udlrn"]
+        q = goal_values(maze, 0.7, actions)
+        r_leg = legible_rewards(q, 0.8, "proper_posterior")
+        rows = self.rows(worlds[1], self.CHOSEN)
+        assert [row["framework"] for row in rows] == [
+            *("polmdp_proper_posterior", "polmdp_advantage", "lmdp", "optimal")
+        ]
+        for row in rows:
+            way = ways[row["framework"]].rollout
+            beliefs = action_beliefs(maze, q, way.states, way.actions, actions, beta=2.0)
+            n = maze.goal_index(row["goal"])
+            seen = measure_legibility(way, n, r_leg, beliefs, 0.7, "kl")
+            assert row["polmdp"] == pytest.approx(seen.polmdp)
+            assert row["lmdp"] == pytest.approx(seen.lmdp)
+
+    def test_reach_every_plan(self, worlds, monkeypatch):
+        planned = []
+
+        def heard(maze, goal, parameters):
+            planned.append(parameters)
+            return plan_legible(maze, goal, parameters)
+
+        monkeypatch.setattr(frameworks, "plan_legible", heard)
+        frameworks.warm_up.cache_clear()
+        self.rows(worlds[1], self.CHOSEN)
+        assert set(planned) == set(self.CHOSEN.polmdps.values())
+        assert {p.variant for p in planned} == {"proper_posterior", "advantage"}
+
+    def test_end_a_run_after_the_most_moves(self, worlds):
+        rows = self.rows(worlds[1], design_comparison(most_moves=1, simulations=5))
+        assert {(row["steps"], row["arrived"]) for row in rows} == {(1, 0)}
+
+
+def test_worlds_play_as_many_pairs_as_are_listed_for_each(worlds, tmp_path):
+    lists = [
+        replace(world, pairs=tuple(draw_pairs(world, count, 1)))
+        for world, count in zip(worlds, (1, 3), strict=True)
+    ]
+    comparison = design_comparison(pairs=None, simulations=5)
+    store = open_comparison(tmp_path, lists, comparison)
+    heard = []
+    compare_frameworks(lists, comparison, store, progress=lambda *done: heard.append(done))
+    rows = read_rows(store.file).filter(framework="optimal")
+    assert rows.select("world", "pair").rows() == [
+        ("4x4", 0),
+        *(("5x6", pair) for pair in range(3)),
+    ]
+    assert heard == [(done, 4) for done in range(5)]
+
+
+def test_a_world_without_listed_or_drawn_pairs_is_refused(worlds, tmp_path):
+    comparison = design_comparison(pairs=None)
+    store = open_comparison(tmp_path, worlds, comparison)
+    with pytest.raises(ModelError, match="4x4: expected listed pairs, or how many to draw"):
+        compare_frameworks(worlds, comparison, store)

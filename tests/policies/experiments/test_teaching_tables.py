@@ -9,7 +9,8 @@ from policies import TeachingDesign, make_teaching_tables
 from policies.experiments.images import draw_images
 from policies.experiments.teaching import COLUMNS, EXAMPLES
 from policies.experiments.teaching_figure import draw_teaching
-from policies.experiments.teaching_report import publish_teaching, summarise
+from policies.experiments.teaching_report import PAPER, publish_teaching, summarise
+from tests.policies.experiments.numbers import numbers_of, printable, printed_in
 
 TEACHERS = ("polmdp", "optimal")
 GOALS = "AB"
@@ -140,3 +141,11 @@ def test_the_summary_sets_the_papers_ratios_beside_ours(lessons):
     assert f"{ratio:.3f} [" in row
     assert "(0.776)" in row
     assert "(0.691)" in row
+
+
+def test_the_summary_prints_no_number_but_these(lessons):
+    tables = make_teaching_tables(lessons[0])
+    published = [ratio for ratios in PAPER.values() for ratio in ratios]
+    shown = numbers_of(tables.ratios, tables.differences)
+    text = summarise(BAYES, tables)
+    assert printed_in(text, ["95 %"]) <= printable([*shown, *published])
