@@ -1,8 +1,8 @@
 """Compiled loops for distances in a maze and what follows from them: Q* and legible rewards.
 
-`after[x, a]` is the cell that action a leads to when it does not fail; the first four actions are
-the moves. Cells and places in tables are unsigned where they index: numba then leaves out the
-question whether an index counts from the end, a third of the time.
+`after[x, a]` is the cell that action a leads to when it does not fail; `moves[x, a]` has of them the
+four moves. Cells and places in tables are unsigned where they index: numba then leaves out the
+question whether an index counts from the end, which would take a third of the time.
 """
 
 import math
@@ -21,7 +21,7 @@ LARGEST_EXPONENT = 600.0
 
 
 @njit(cache=True, nogil=True)
-def breadth_first(after: Integers, start: int, d: Integers, order: Integers) -> int:
+def breadth_first(moves: Integers, start: int, d: Integers, order: Integers) -> int:
     """Write the fewest moves to `start` into `d`, -1 where no way leads; the cells reached.
 
     `order`, of one entry more than there are cells, gets those cells, the nearest first.
@@ -36,7 +36,7 @@ def breadth_first(after: Integers, start: int, d: Integers, order: Integers) -> 
         first += 1
         for a in range(MOVES):
             # Without a branch: whether a cell is new cannot be predicted, and guesses cost more.
-            y = np.uint32(after[x, a])
+            y = np.uint32(moves[x, a])
             new = d[y] < 0
             d[y] = farther if new else d[y]
             order[np.uint32(last)] = y
@@ -51,10 +51,10 @@ def moves_only(after: Integers) -> Integers:
 
 
 @njit(cache=True, nogil=True)
-def fill_distances(after: Integers, goals: Integers, d: Integers) -> int:
+def fill_distances(moves: Integers, goals: Integers, d: Integers) -> int:
     """Write the fewest moves to goal n into `d[n, x]`; the least number of cells that reach one."""
-    moves, order = moves_only(after), np.empty(len(after) + 1, np.int32)
-    least = len(after)
+    order = np.empty(len(moves) + 1, np.int32)
+    least = len(moves)
     for n in range(len(goals)):
         least = min(least, breadth_first(moves, goals[n], d[n], order))
     return least
@@ -68,41 +68,43 @@ def place(k: int, onwards: int) -> int:
 
 @njit(cache=True, nogil=True)
 def value_tables(farthest: int, gamma: float, failure: float) -> tuple[Array, Array]:
-    """V* and Q* by distance, of goals where the robot cannot stay (s = 0) and where it can (s = 1).
+    """V*(x) and Q*(x, a) of goals where the robot cannot stay (s = 0), and where it can (s = 1).
 
-    `v[s, k]` for distance k, `q[s, place(k, l)]` for a move from k to l = k - 1, k or k + 1. What
-    no state has (at the goal, a move that comes nearer) holds some finite value; where no way
-    leads, k = l = -1, the value is 0.
+    `v[s, place(k, l)]` and `q[s, place(k, l)]` for a move from distance k to l = k - 1, k or
+    k + 1. What no state has (at the goal, a move that comes nearer) is some finite value; where
+    no way leads, k = l = -1, all is 0.
     """
     kappa = (1 - failure) * gamma / (1 - failure * gamma)
-    loops = gamma * (failure + (1 - failure) * kappa), gamma
-    v, q = np.empty((2, farthest + 2)), np.zeros((2, place(farthest + 1, farthest)))
+    power = np.empty(farthest + 2)
     for k in range(farthest + 2):
-        power = math.pow(kappa, k)
-        for s in range(2):
-            v[s, k] = power / (1 - loops[s])
+        # Of an integer power the compiler would make products, each rounded.
+        power[k] = math.pow(kappa, float(k))
+    v, q = np.zeros((2, 3 * farthest + 6)), np.zeros((2, 3 * farthest + 6))
     for s in range(2):
+        loop = gamma if s else gamma * (failure + (1 - failure) * kappa)
+        by_distance = power / (1 - loop)
         for k in range(farthest + 1):
             r = 1.0 if k == 0 else 0.0
             for onwards in range(k - 1, k + 2):
-                later = failure * v[s, k] + (1 - failure) * v[s, max(onwards, 0)]
+                later = failure * by_distance[k] + (1 - failure) * by_distance[max(onwards, 0)]
+                v[s, place(k, onwards)] = by_distance[k]
                 q[s, place(k, onwards)] = r + gamma * later
     return v, q
 
 
 @njit(cache=True, nogil=True)
-def can_stay(after: Integers, goals: Integers) -> Integers:
+def can_stay(moves: Integers, goals: Integers, A: int) -> Integers:
     """1 for a goal where some action leaves the robot (no-op, or a wall to run into), else 0."""
-    s = np.zeros(len(goals), np.int8)
+    s = np.full(len(goals), 1 if A > MOVES else 0, np.int8)
     for n in range(len(goals)):
-        for a in range(after.shape[1]):
-            if after[goals[n], a] == goals[n]:
+        for a in range(MOVES):
+            if moves[goals[n], a] == goals[n]:
                 s[n] = 1
     return s
 
 
 @njit(cache=True, nogil=True)
-def gather(after: Integers, d: Integers, s: Integers, table: Array, into: Array) -> None:
+def gather(moves: Integers, d: Integers, s: Integers, table: Array, into: Array) -> None:
     """Fill `into[n, x, a]` from `table[s[n], place(k, l)]`, k and l the distances before and after.
 
     A move changes the distance by at most 1, so an action has one of three values per distance.
@@ -113,7 +115,7 @@ def gather(after: Integers, d: Integers, s: Integers, table: Array, into: Array)
         for x in range(S):
             k = of_goal[x]
             for a in range(MOVES):
-                onwards = of_goal[np.uint32(after[x, a])]
+                onwards = of_goal[np.uint32(moves[x, a])]
                 filled[x, a] = values[np.uint32(place(k, onwards))]
             for a in range(MOVES, A):
                 filled[x, a] = values[np.uint32(place(k, k))]
@@ -135,15 +137,13 @@ def over_actions(w: Array) -> None:
 @njit(cache=True, nogil=True)
 def over_goals(w: Array) -> None:
     """Normalise weights `w[n, x, a]` over goals, in place."""
-    N, S, A = w.shape
-    flat = w.reshape(N, S * A)
-    for i in range(S * A):
-        total = 0.0
-        for n in range(N):
-            total += flat[n, i]
-        share = 1 / total
-        for n in range(N):
-            flat[n, i] *= share
+    flat = w.reshape(len(w), -1)
+    total = flat[0].copy()
+    for n in range(1, len(w)):
+        total += flat[n]
+    share = 1 / total
+    for n in range(len(w)):
+        flat[n] *= share
 
 
 @njit(cache=True, nogil=True)
@@ -178,47 +178,48 @@ def exp_over_goals(w: Array) -> None:
 
 @njit(cache=True, nogil=True)
 def fill_goal_values(
-    after: Integers, goals: Integers, d: Integers, gamma: float, failure: float, q: Array
-) -> None:
-    """Write Q*_n into `q[n, x, a]`."""
+    after: Integers, goals: Integers, gamma: float, failure: float, q: Array
+) -> int:
+    """Write Q*_n into `q[n, x, a]`; the least number of cells that reach a goal."""
+    moves, d = moves_only(after), np.empty(q.shape[:2], np.int32)
+    least = fill_distances(moves, goals, d)
     table = value_tables(d.max(), gamma, failure)[1]
-    gather(after, d, can_stay(after, goals), table, q)
+    gather(moves, d, can_stay(moves, goals, q.shape[2]), table, q)
+    return least
 
 
 @njit(cache=True, nogil=True)
 def fill_rewards(
     after: Integers,
     goals: Integers,
-    d: Integers,
     gamma: float,
     failure: float,
     beta: float,
     less_v: bool,
     by_action: bool,
-    q: Array,
-    r_leg: Array,
-) -> None:
-    """Write Q*_n into `q[n, x, a]` and the posterior of goal n into `r_leg[n, x, a]`.
+    q_and_r: Array,
+) -> int:
+    """Write Q*_n and the posterior of goal n into `q_and_r`, each [n, x, a].
 
     Goals weigh exp(beta Q_n), or exp(beta (Q_n - V_n)) if `less_v`; `by_action` first divides
-    each goal's weights by their sum over actions.
+    each goal's weights by their sum over actions. Returns the least number of cells that reach
+    a goal.
     """
-    s = can_stay(after, goals)
-    v, table = value_tables(d.max(), gamma, failure)
-    gather(after, d, s, table, q)
-    weights = beta * (table - table.max())
-    if less_v:
-        for i in range(table.size // 2):
-            k = i // 3 - 1
-            for j in range(2):
-                weights[j, i] = beta * (table[j, i] - v[j, k]) if k >= 0 else 0.0
-    if weights.min() < -LARGEST_EXPONENT or weights.max() > LARGEST_EXPONENT:
-        gather(after, d, s, weights, r_leg)
+    q, r_leg = q_and_r[0], q_and_r[1]
+    moves, d = moves_only(after), np.empty(q.shape[:2], np.int32)
+    least = fill_distances(moves, goals, d)
+    s = can_stay(moves, goals, q.shape[2])
+    v_table, q_table = value_tables(d.max(), gamma, failure)
+    gather(moves, d, s, q_table, q)
+    log_w = beta * (q_table - (v_table if less_v else np.full_like(q_table, q_table.max())))
+    if log_w.min() < -LARGEST_EXPONENT or log_w.max() > LARGEST_EXPONENT:
+        gather(moves, d, s, log_w, r_leg)
         if by_action:
             log_over_actions(r_leg)
         exp_over_goals(r_leg)
     else:
-        gather(after, d, s, np.exp(weights), r_leg)
+        gather(moves, d, s, np.exp(log_w), r_leg)
         if by_action:
             over_actions(r_leg)
         over_goals(r_leg)
+    return least

@@ -6,6 +6,7 @@ reward scaled by f = 1 / (1 - .15 gamma) and a discount kappa = .85 gamma f. Wha
 graph without chance. `leak` is 1 - kappa = f (1 - gamma).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -15,7 +16,7 @@ import numpy as np
 from policies.errors import ModelError
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import Array
-from policies.solvers import cells_after, check_discount, distances, goal_states
+from policies.solvers import check_discount, distances, goal_states
 
 Variant = Literal["as_printed", "proper_posterior", "advantage"]
 
@@ -43,12 +44,15 @@ def maze_rewards(
     from policies.maze_kernels import fill_rewards
 
     check_discount(gamma)
-    d, after = distances(maze), cells_after(maze, actions)
-    # One block of memory: two are handed back to the system and fetched anew every time.
-    q, r_leg = np.empty((2, len(d), *after.shape))
     less_v, by_action = variant != "as_printed", variant == "proper_posterior"
-    fill_rewards(after, goal_states(maze), d, gamma, FAILURE, beta, less_v, by_action, q, r_leg)
-    return q, r_leg
+    # One block of memory: two are handed back to the system and fetched anew every time.
+    q_and_r = np.empty((2, len(maze.goals), maze.states, len(actions)))
+    reached = fill_rewards(
+        maze.successors, goal_states(maze), gamma, FAILURE, beta, less_v, by_action, q_and_r
+    )
+    if reached < maze.states:
+        distances(maze)  # says which
+    return q_and_r[0], q_and_r[1]
 
 
 def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) -> MazeSolution:
@@ -59,15 +63,14 @@ def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) ->
     from policies.value_kernels import optimise
 
     check_discount(gamma)
-    after = cells_after(maze, actions)
-    if r.shape != after.shape or not np.isfinite(r).all():
-        raise ModelError(f"expected finite rewards of shape {after.shape}, came {r.shape}")
-    v, q = np.empty(maze.states), np.empty(r.shape)
-    bound = optimise(after, r, gamma, FAILURE, v, q)
+    v, q = np.empty(maze.states), np.empty((maze.states, len(actions)))
+    bound = optimise(maze.successors, r, gamma, FAILURE, v, q) if r.shape == q.shape else math.nan
+    if math.isnan(bound):
+        raise ModelError(f"expected finite rewards of shape {q.shape}, came {r.shape}")
     return MazeSolution(v, q, bound)
 
 
-def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) -> Array:
+def least_cost(maze: Maze, goal: int, cost: Array) -> Array:
     """Least expected undiscounted `cost[x, a]` >= 0 until the goal is entered, shape (S,).
 
     Folding a failed action's self-loop leaves a graph with edges cost / .85, where taking up
@@ -76,5 +79,5 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     from policies import value_kernels
 
     least = np.empty(maze.states)
-    value_kernels.least_cost(cells_after(maze, actions), cost, FAILURE, goal, least)
+    value_kernels.least_cost(maze.successors, cost, FAILURE, goal, least)
     return least

@@ -155,7 +155,7 @@ def _least_cost(
     """
     after = maze.successors[:, list(actions)]
     moves = after != np.arange(maze.states)[:, None]
-    v = least_cost(maze, goal, cost, actions)
+    v = least_cost(maze, goal, cost)
     tied = ties(-(cost + FAILURE * v[:, None] + (1 - FAILURE) * v[after]))
     level = tied & moves & (v[after] <= v[:, None])
     x, a = np.nonzero(level)

@@ -81,10 +81,10 @@ def distances_to(maze: Maze, goal: int) -> NDArray[np.int32]:
 
 
 def _distances(maze: Maze, goals: NDArray[np.int64]) -> NDArray[np.int32]:
-    from policies.maze_kernels import fill_distances
+    from policies.maze_kernels import fill_distances, moves_only
 
     d = np.empty((len(goals), maze.states), np.int32)
-    if fill_distances(maze.successors, goals, d) < maze.states:
+    if fill_distances(moves_only(maze.successors), goals, d) < maze.states:
         n, x = divmod(int(d.argmin()), maze.states)
         raise MazeError(
             f"expected cell {maze.cell(int(goals[n]))} to be reachable from every cell, "
@@ -103,9 +103,9 @@ def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
     from policies.maze_kernels import fill_goal_values
 
     check_discount(gamma)
-    d, after = distances(maze), cells_after(maze, actions)
-    q = np.empty((len(d), *after.shape))
-    fill_goal_values(after, goal_states(maze), d, gamma, FAILURE, q)
+    q = np.empty((len(maze.goals), maze.states, len(actions)))
+    if fill_goal_values(maze.successors, goal_states(maze), gamma, FAILURE, q) < maze.states:
+        distances(maze)  # says which
     return q
 
 

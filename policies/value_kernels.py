@@ -36,7 +36,8 @@ MOST_TAKEN = 4
 
 @njit(cache=True, nogil=True)
 def optimise(after: Integers, r: Array, gamma: float, failure: float, v: Array, q: Array) -> float:
-    """Write the optimal values, without an end, into `v[x]` and `q[x, a]`; returns their bound.
+    """Write the optimal values, without an end, into `v[x]` and `q[x, a]`; returns their bound, nan
+    if a reward is not finite.
 
     Values spread from cells where the robot stays, or goes to and fro between two. Where longer
     cycles pay the residual shows it: there the greedy policy is evaluated exactly, as in policy
@@ -44,7 +45,8 @@ def optimise(after: Integers, r: Array, gamma: float, failure: float, v: Array, 
     """
     scale = 1 / (1 - failure * gamma)
     leak = scale * (1 - gamma)
-    order, to, c, stay = graph(after, r, scale, r.argmax() // r.shape[1])
+    # Any cell is good to begin from; from where values are high, fewer sweeps are needed.
+    order, to, c, stay = graph(after, r, scale, r[:, -1].argmax())
     values = start_values(to, c, stay, leak)
     best = np.empty(len(v), np.int8)
     residual = math.inf
@@ -55,8 +57,8 @@ def optimise(after: Integers, r: Array, gamma: float, failure: float, v: Array, 
             break
         evaluate_choice(to, c, stay, leak, best, values)
     v[order] = values
-    back_up(after, r, gamma, failure, v, q)
-    return residual / leak
+    finite = back_up(after, r, gamma, failure, v, q)
+    return residual / leak if finite else math.nan
 
 
 @njit(cache=True, nogil=True)
@@ -282,9 +284,13 @@ def evaluate_choice(
 
 
 @njit(cache=True, nogil=True)
-def back_up(after: Integers, r: Array, gamma: float, failure: float, v: Array, q: Array) -> None:
-    """Write the action values q[x, a] = r[x, a] + gamma E[v(x')] of values v."""
+def back_up(after: Integers, r: Array, gamma: float, failure: float, v: Array, q: Array) -> bool:
+    """Write q[x, a] = r[x, a] + gamma E[v(x')] of values v; whether all are finite."""
+    finite = True
     S, A = r.shape
     for x in range(S):
         for a in range(A):
-            q[x, a] = r[x, a] + gamma * (failure * v[x] + (1 - failure) * v[after[x, a]])
+            later = failure * v[x] + (1 - failure) * v[np.uint32(after[x, a])]
+            q[x, a] = r[x, a] + gamma * later
+            finite &= math.isfinite(q[x, a])
+    return finite
