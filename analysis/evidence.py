@@ -22,7 +22,7 @@ from .statistics.calibration import (
     discrimination,
 )
 from .statistics.chance import against_chance
-from .statistics.cox import CoxResult, clustered_cox
+from .statistics.cox import CoxResult, TwoWayCox, clustered_cox, two_way_cox
 from .statistics.design_effect import TippingPoint, design_effect, tipping_icc
 from .statistics.intraclass import (
     IntraclassCorrelation,
@@ -62,6 +62,7 @@ class Evidence:
     chance: tuple[TwoWay, TwoWay]
     incidence: Incidence
     cox: CoxResult
+    two_way_cox: TwoWayCox
     by_confidence: AccuracyBy
     by_time: AccuracyBy
     discrimination: tuple[Discrimination, Discrimination]
@@ -76,7 +77,12 @@ def gather(data: Dataset) -> Evidence:
     confidence = _numbers(data, "confidence")
     stop_time_s = _numbers(data, "stop_time_s")
     ends = stops(
-        stop_time_s, _numbers(data, "length_s"), correct.y, correct.treated, correct.participant
+        stop_time_s,
+        _numbers(data, "length_s"),
+        correct.y,
+        correct.treated,
+        correct.participant,
+        correct.scenario,
     )
     low, high = data.confidence_scale
     levels = range(math.floor(low), math.ceil(high) + 1)
@@ -88,6 +94,7 @@ def gather(data: Dataset) -> Evidence:
         chance=against_chance(correct, data.plan.chance_level),
         incidence=cumulative_incidence(ends),
         cox=clustered_cox(ends),
+        two_way_cox=two_way_cox(ends),
         by_confidence=accuracy_by_confidence(correct, confidence, levels),
         by_time=accuracy_by_time(correct, stop_time_s),
         discrimination=discrimination(correct, confidence),

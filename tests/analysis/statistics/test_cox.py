@@ -2,6 +2,7 @@
 
 import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ def made(trials):
     """Stops from (time, ending, participant), after one correct stop of each of four."""
     trials = [*((1 + who % 3, CORRECT, who) for who in range(4)), *trials]
     time, ending, who = (np.array(column) for column in zip(*trials, strict=True))
-    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, 0)
+    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, (time + who) % 3, 0)
 
 
 def estimated(given):
@@ -42,24 +43,29 @@ def of_arms(treatment, reference):
     """Correct stops at these times, every trial of another participant."""
     time = np.array([*treatment, *reference], dtype=float)
     n = len(time)
-    return Stops(time, np.full(n, CORRECT, np.int8), np.arange(n) < len(treatment), np.arange(n), 0)
+    each = np.arange(n)
+    return Stops(time, np.full(n, CORRECT, np.int8), each < len(treatment), each, each % 4, 0)
+
+
+def of_fixture(path):
+    """The stops of the synthetic trials."""
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    return stops(
+        stop_time_s=column["stop_time"].astype(float),
+        length_s=column["video_length"].astype(float),
+        correct=column["correct"].astype(float),
+        treated=column["condition"] == "polmdp",
+        participant=np.unique(column["participant"], return_inverse=True)[1],
+        scenario=np.unique(column["video"], return_inverse=True)[1],
+    )
 
 
 def test_golden_cox_of_the_synthetic_fixture(golden, paper_fixture):
     """R survival::coxph, Efron ties, cluster = participant."""
     case = golden("cox_fixture")
-    with paper_fixture.open() as file:
-        rows = list(csv.DictReader(file))
-    column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    test = clustered_cox(
-        stops(
-            stop_time_s=column["stop_time"].astype(float),
-            length_s=column["video_length"].astype(float),
-            correct=column["correct"].astype(float),
-            treated=column["condition"] == "polmdp",
-            participant=np.unique(column["participant"], return_inverse=True)[1],
-        )
-    )
+    test = clustered_cox(of_fixture(paper_fixture))
     names = {"loghr": test.estimate, "robust_se": test.se, "naive_se": test.naive_se}
     holds(case, names | {"p": test.p})
     assert test.p == pytest.approx(case["expected"]["p"], rel=1e-3)
@@ -81,7 +87,7 @@ def test_estimate_and_naive_error_are_those_of_statsmodels(trials):
 @given(TRIALS)
 def test_swapping_the_arms_changes_the_sign_and_nothing_else(trials):
     given = made(trials)
-    swapped = Stops(given.time_s, given.ending, ~given.treated, given.participant, 0)
+    swapped = replace(given, treated=~given.treated)
     one, other = estimated(given), estimated(swapped)
     assert (one.estimate, one.low) == pytest.approx((-other.estimate, -other.high), abs=1e-9)
     assert (one.se, one.p) == pytest.approx((other.se, other.p))
@@ -90,7 +96,7 @@ def test_swapping_the_arms_changes_the_sign_and_nothing_else(trials):
 @given(TRIALS)
 def test_only_the_order_of_times_matters(trials):
     given = made(trials)
-    later = Stops(given.time_s**3, given.ending, given.treated, given.participant, 0)
+    later = replace(given, time_s=given.time_s**3)
     assert clustered_cox(given) == clustered_cox(later)
 
 
@@ -125,7 +131,7 @@ def test_the_error_of_untied_single_trials_is_the_one_lifelines_gives():
 
 def test_trials_of_one_participant_count_together():
     apart = of_arms(treatment=[1, 2, 5, 7, 8, 11], reference=[3, 4, 6, 9, 10, 12])
-    together = Stops(apart.time_s, apart.ending, apart.treated, np.arange(12) // 2, 0)
+    together = replace(apart, participant=np.arange(12) // 2)
     one, other = clustered_cox(apart), clustered_cox(together)
     assert (one.estimate, one.naive_se) == (other.estimate, other.naive_se)
     assert one.se != pytest.approx(other.se)
@@ -135,7 +141,7 @@ def test_trials_of_one_participant_count_together():
 def test_an_arm_that_never_stops_correctly_has_no_ratio(silent):
     given = of_arms(treatment=[1, 2], reference=[3, 4])
     ending = np.where(given.treated == silent, WRONG, CORRECT)
-    test = clustered_cox(Stops(np.ones(4), ending, given.treated, given.participant, 2))
+    test = clustered_cox(replace(given, time_s=np.ones(4), ending=ending, n_missing=2))
     assert (test.estimate, test.se, test.p, test.low) == (None, None, None, None)
     assert test.warnings == (SEPARATION,)
     assert (test.n, test.n_missing, test.n_events) == (4, 2, 2)
@@ -143,7 +149,7 @@ def test_an_arm_that_never_stops_correctly_has_no_ratio(silent):
 
 def test_no_correct_stop_at_all_has_no_ratio():
     given = of_arms(treatment=[1, 2], reference=[3, 4])
-    nobody = Stops(given.time_s, np.full(4, CENSORED), given.treated, given.participant, 0)
+    nobody = replace(given, ending=np.full(4, CENSORED))
     assert clustered_cox(nobody).warnings == (SEPARATION,)
 
 
@@ -153,9 +159,7 @@ def test_one_arm_done_before_the_other_begins_has_no_ratio():
 
 def test_one_participant_in_an_arm_leaves_the_error_open():
     given = of_arms(treatment=[1, 4], reference=[2, 3])
-    test = clustered_cox(
-        Stops(given.time_s, given.ending, given.treated, np.array([0, 0, 1, 2]), 0)
-    )
+    test = clustered_cox(replace(given, participant=np.array([0, 0, 1, 2])))
     assert test.estimate is not None
     assert (test.se, test.p, test.warnings) == (None, None, (ONE_PARTICIPANT,))
 
