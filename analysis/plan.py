@@ -24,6 +24,9 @@ PRIMARY_TESTS = ("two_way_difference", "two_way_auc")
 TIME_COLUMNS = {"penalised": "prediction_time_s", "stop": "stop_time_s"}
 """The column of the trials that each definition of time takes."""
 
+COVARIATES = ("trial_order", "age", "device")
+"""What the mixed models and the Cox regression can be adjusted for; primary tests never are."""
+
 _HYPOTHESES = {"correct": "H1", "time": "H2", "confidence": "H2"}
 """What the plan calls the measures, and the hypothesis each one is for."""
 
@@ -38,6 +41,7 @@ _KEYS = (
     "reference",
     "primary",
     "exclusions",
+    "covariates",
 )
 
 
@@ -56,7 +60,8 @@ class Plan:
 
     `alpha` is two-sided; `time` a key of `TIME_COLUMNS`; `primary` has one test for each measure;
     `holm_family` names, by their columns, the measures whose primary p values are corrected
-    together; `choices` counts the areas to guess among; `file` is where it was read from.
+    together; `choices` counts the areas to guess among; `covariates` are some of `COVARIATES`;
+    `file` is where it was read from.
     """
 
     arms: Arms
@@ -67,6 +72,7 @@ class Plan:
     choices: int
     trials_per_participant: int
     exclusions: tuple[Exclusion, ...]
+    covariates: tuple[str, ...]
     seed: int
     file: str
 
@@ -77,8 +83,12 @@ class Plan:
 
     @property
     def content(self) -> dict[str, Any]:
-        """What the plan says, under the keys of its file."""
-        return {
+        """What the plan says, under the keys of its file.
+
+        Keys that came later are left out where they say what the default says, so that plans
+        registered before keep their hash.
+        """
+        said = {
             "alpha": self.alpha,
             "time": self.time,
             "holm_family": [_in_plan(measure) for measure in self.holm_family],
@@ -90,6 +100,9 @@ class Plan:
             "primary": {_in_plan(each.measure): each.test for each in self.primary},
             "exclusions": [{"rule": each.rule, **each.parameters} for each in self.exclusions],
         }
+        if self.covariates:
+            said["covariates"] = list(self.covariates)
+        return said
 
     @property
     def sha256(self) -> str:
@@ -124,6 +137,7 @@ def _plan(file: str, content: Mapping[str, Any]) -> Plan:
         choices=plan.whole("choices", least=2),
         trials_per_participant=plan.whole("trials_per_participant", least=1),
         exclusions=tuple(_exclusion(each) for each in plan.sections("exclusions")),
+        covariates=_covariates(plan),
         seed=plan.whole("seed"),
         file=file,
     )
@@ -170,6 +184,14 @@ def _family(plan: Section, time: str) -> tuple[str, ...]:
     if not isinstance(family, list) or len(chosen) < len(family):
         raise plan.wrong("holm_family", f"a list of some of {', '.join(_HYPOTHESES)}", family)
     return tuple(_column(measure, time) for measure in chosen)
+
+
+def _covariates(plan: Section) -> tuple[str, ...]:
+    named = plan.content["covariates"]
+    chosen = [each for each in COVARIATES if isinstance(named, list) and each in named]
+    if not isinstance(named, list) or len(chosen) < len(named):
+        raise plan.wrong("covariates", f"a list of some of {', '.join(COVARIATES)}", named)
+    return tuple(chosen)
 
 
 def _exclusion(section: Section) -> Exclusion:

@@ -90,9 +90,13 @@ def two_way_cox(stops: Stops) -> TwoWayCox:
     Journal of the American Statistical Association 84, 1074-1078; Cameron, Gelbach and Miller
     (2011).
     """
-    fit, reason = fitted(stops)
+    return result_of(stops, *fitted(stops))
+
+
+def result_of(stops: Stops, fit: CoxFit | None, reason: str, adjusted: str = "") -> TwoWayCox:
+    """Return the two-way test of the arm in a fit, or that there is none; as `fitted` tells."""
     inference = (
-        undefined_two_way(stops, reason) if fit is None else coefficient_test(stops, fit, 0)
+        _undefined_two_way(stops, reason) if fit is None else coefficient_test(stops, fit, 0)
     )
     ratio, low, high = _ratios(inference["estimate"], inference["low"], inference["high"])
     return TwoWayCox(
@@ -100,7 +104,7 @@ def two_way_cox(stops: Stops) -> TwoWayCox:
         unit=UNIT,
         n=len(stops.time_s),
         n_missing=stops.n_missing,
-        method=f"{METHOD}, variance two-way clustered by participant and scenario",
+        method=f"{METHOD}{adjusted}, variance two-way clustered by participant and scenario",
         source=f"Cox (1972), Lin and Wei (1989); {SOURCE}",
         hazard_ratio=ratio,
         hazard_ratio_low=low,
@@ -126,7 +130,7 @@ def coefficient_test(stops: Stops, fit: CoxFit, column: int) -> TwoWayInference:
     return two_way(_trials(stops), influence, 0.0)
 
 
-def undefined_two_way(stops: Stops, reason: str) -> TwoWayInference:
+def _undefined_two_way(stops: Stops, reason: str) -> TwoWayInference:
     """Return that nothing is known, and why."""
     data = _trials(stops)
     return TwoWayInference(

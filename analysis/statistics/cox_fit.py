@@ -17,8 +17,9 @@ from .outcome import Numbers
 _CLOSE = 1e-20
 """Squared length of a Newton step, in standard errors, that is not worth taking."""
 _MOST_STEPS = 100
-_REACH = 100.0
-"""No finite estimate lies outside +-_REACH: log hazard ratios are of the order of log N."""
+_REACH = 10.0
+"""No finite log hazard ratio of a standard deviation is larger: that of two arms is at most of the
+order of log N, for which a standard deviation is a half or less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,20 +60,22 @@ class CoxLikelihood:
 
     def is_separated(self, treated: NDArray[np.bool_]) -> bool:
         """Tell whether the likelihood has no maximum in the hazard ratio of two arms alone."""
-        treatment, reference = (self._at_risk(each.astype(np.float64)) for each in (treated, ~treated))
+        treatment, reference = (
+            self._at_risk(each.astype(np.float64)) for each in (treated, ~treated)
+        )
         of_treated = int((self._event & treated).sum())
         return of_treated in (int((reference == 0).sum()), int((treatment > 0).sum()))
 
     def fit(self) -> CoxFit | None:
         """Return the maximum, by Newton's method with halved steps; None if there is none."""
-        at = np.zeros(self._x.shape[1])
+        at, scale = np.zeros(self._x.shape[1]), self._x.std(axis=0)
         value, score, information = self._slopes(at)
         for _ in range(_MOST_STEPS):
-            if np.linalg.matrix_rank(information) < len(at) or np.abs(at).max() > _REACH:
+            if np.abs(at * scale).max() > _REACH or not np.linalg.det(information) > 0:
                 return None
             step = np.linalg.solve(information, score)
             if score @ step < _CLOSE:
-                naive = np.linalg.inv(information)
+                naive = np.linalg.inv(information).astype(np.float64, copy=False)
                 return CoxFit(at, naive, self._score_residuals(at) @ naive)
             further = self._slopes(at + step)
             while further[0] < value - 1e-9 * abs(value):
@@ -108,7 +111,8 @@ class CoxLikelihood:
     def _by_passed(self, values: Numbers) -> Numbers:
         """Return the sum of values over the trials that end at each time or later, shape (U,)."""
         ending = np.bincount(self._passed, values, len(self._events) + 1)
-        return np.cumsum(ending[:0:-1])[::-1]
+        there: Numbers = np.cumsum(ending[:0:-1], dtype=np.float64)[::-1]
+        return there
 
     def _score_residuals(self, at: Numbers) -> Numbers:
         """Return each trial's share in the score, shape (N, K); they sum to 0 at the maximum."""
