@@ -53,8 +53,8 @@ class Likeness:
 class Evidence:
     """The numbers of one analysis; mappings are by measure, a column of the trials.
 
-    `chance` and `discrimination` are of the treatment and of the reference arm; `adjustment` is None
-    where the plan names no covariates.
+    `chance` and `discrimination` are of the treatment and of the reference arm; `adjustment` is
+    None where the plan names no covariates.
     """
 
     paper: PaperBlock
