@@ -3,7 +3,7 @@
 A trial's rate of correct stops is `CORRECT_PER_S` times the exponential of what participant,
 scenario and scenario in arm add, normal as in crossed_model.py, on the scale of log rates; wrong
 stops come at a rate of their own, and each scenario's animation ends at a length of its own. With
-nothing added 78 % of the trials end in a correct stop, 14 % in a wrong one, 8 % at the end.
+nothing added about 78 % of trials end in a correct stop, 14 % in a wrong one, 7 % at the end.
 """
 
 from __future__ import annotations
