@@ -104,7 +104,9 @@ def _age(data: Dataset) -> _Terms:
     lacking = _participants(data, ages.is_null())
     if not lacking:
         return _Terms(columns)
-    note = f"age: {lacking} participants did not tell theirs; their trials count at the mean age"
+    note = (
+        f"age: participants who did not tell theirs: {lacking}; their trials count at the mean age"
+    )
     if lacking < FEWEST:
         return _Terms(columns, (f"{note}, too few for a term of their own",))
     columns["age not told"] = ages.is_null().cast(pl.Float64).to_numpy()
@@ -127,8 +129,8 @@ def _device(data: Dataset) -> _Terms:
             if each not in rare
         },
         tuple(
-            f"device: {each}, of {sizes[each]} participants, is too rare to be estimated and "
-            f"counts as {reference}"
+            f"device: {each} is too rare to be estimated (participants: {sizes[each]}) and counts "
+            f"as {reference}"
             for each in rare
         ),
     )

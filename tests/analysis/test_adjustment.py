@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from analysis import PARTICIPANTS, TRIALS, analyse_path, methods, write_table
+from analysis import PARTICIPANTS, TRIALS, adjustment, analyse_path, methods, write_table
 from analysis.adjustment import _TERMS, TIME_TO_STOP
 from analysis.plan import COVARIATES
 from analysis.reporting.as_json import as_json
@@ -79,9 +79,9 @@ def test_the_models_of_a_study_are_those_of_r(adjusted, key, frozen):
 
 def test_who_did_not_tell_stays_in_and_what_is_rare_is_told(adjusted):
     assert adjusted.evidence.adjustment.notes == (
-        "age: 5 participants did not tell theirs; their trials count at the mean age, with a term "
-        "of their own",
-        "device: pen, of 3 participants, is too rare to be estimated and counts as mouse",
+        "age: participants who did not tell theirs: 5; their trials count at the mean age, with a "
+        "term of their own",
+        "device: pen is too rare to be estimated (participants: 3) and counts as mouse",
     )
     assert {each.effect.n for each in adjusted.evidence.adjustment.models.values()} == {1500}
 
@@ -102,7 +102,7 @@ def test_the_report_shows_each_model_without_and_with_covariates(adjusted):
         "| age, per year | odds ratio 1.01 | 0.99 to 1.02 | t(36) = 1.14 | .261 | 1,500 |",
         "| PoLMDP against optimal, unadjusted | hazard ratio 1.71 | 1.47 to 2.00 |",
         "| device: touch against mouse | hazard ratio 0.93 |",
-        "- Device: pen, of 3 participants, is too rare to be estimated",
+        "- Device: pen is too rare to be estimated",
     ):
         assert row in table
     fine_print = markdown(fine_print_parts(adjusted.data, adjusted.evidence, {}))
@@ -151,11 +151,29 @@ def test_a_few_who_did_not_tell_their_age_get_no_term_of_their_own(of_six):
 
     found = of_six(aged, 'covariates = ["age"]').evidence.adjustment
     assert found.notes == (
-        "age: 1 participants did not tell theirs; their trials count at the mean age, too few for "
-        "a term of their own",
+        "age: participants who did not tell theirs: 1; their trials count at the mean age, too few "
+        "for a term of their own",
     )
     (coefficient,) = found.models[TIME_TO_STOP].coefficients
     assert coefficient.term == "age, per year"
+
+
+def test_a_device_of_as_many_as_are_needed_has_a_term_and_an_unknown_one_is_a_device(
+    of_six, monkeypatch
+):
+    def pointed(people):
+        pointers = ("mouse", "touch", None, "mouse", "touch", "pen")
+        for each, pointer in zip(people, pointers, strict=True):
+            each["pointer_type"] = pointer
+
+    monkeypatch.setattr(adjustment, "FEWEST", 2)
+    found = of_six(pointed, 'covariates = ["device"]').evidence.adjustment
+    terms = [each.term for each in found.models[TIME_TO_STOP].coefficients]
+    assert terms == ["device: touch against mouse"]
+    assert found.notes == (
+        "device: not told is too rare to be estimated (participants: 1) and counts as mouse",
+        "device: pen is too rare to be estimated (participants: 1) and counts as mouse",
+    )
 
 
 def test_an_age_that_is_the_condition_is_told_and_left_out(of_six):

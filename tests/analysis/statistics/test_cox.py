@@ -102,7 +102,7 @@ def test_with_scenarios_of_one_trial_each_it_is_the_error_by_participant():
     """Participants' share in the two-way variance has P / (P - 1), R's cluster has not."""
     given = of_arms(treatment=[1, 2, 5, 7, 8, 11], reference=[3, 4, 6, 9, 10, 12])
     given = replace(given, participant=np.arange(12) // 2, scenario=np.arange(12))
-    expected = estimated(given).se * math.sqrt(6 / 5)
+    expected = defined(clustered_cox(given)).se * math.sqrt(6 / 5)
     assert defined(two_way_cox(given)).se == pytest.approx(expected)
 
 
@@ -112,7 +112,7 @@ def test_scenarios_that_favour_an_arm_raise_the_two_way_error_only():
     treated = participant < 6
     time = 5.0 + participant % 6 / 10 + scenario / 50 - 3 * (treated == (scenario < 2))
     given = Stops(time, np.full(48, CORRECT, np.int8), treated, participant, scenario, 0)
-    one, other = estimated(given), defined(two_way_cox(given))
+    one, other = defined(clustered_cox(given)), defined(two_way_cox(given))
     assert other.se > 2 * one.se
 
 
