@@ -90,6 +90,16 @@ def halves(participants: int, trials_each: int = 10, scenarios: int = 37) -> Des
     return Design(participants // 2, participants // 2, trials_each, scenarios)
 
 
+@dataclass(frozen=True, eq=False)
+class Dealt:
+    """The N trials of a study, arrays of shape (N,); `effect`: what their clusters add to each."""
+
+    treated: NDArray[np.bool_]
+    participant: NDArray[np.int64]
+    scenario: NDArray[np.int64]
+    effect: NDArray[np.float64]
+
+
 @dataclass(frozen=True)
 class CrossedModel:
     """What answers come from: rising `thresholds`, and the treatment's `shift`, in logits.
@@ -137,29 +147,33 @@ def confidence_model(spread: Spread, auc: float = CONFIDENCE_AUC) -> CrossedMode
 
 def simulate(model: CrossedModel, design: Design, rng: np.random.Generator) -> Outcome:
     """Draw all trials of one study, participants of the treatment arm first."""
-    spread = model.spread
-    participant = np.repeat(np.arange(design.participants), design.trials_each)
-    treated = participant < design.treatment
-    arms = (design.treatment, design.reference)
-    scenario = np.concatenate([_dealt(design, size, rng) for size in arms]).ravel()
-    latent = (
-        model.shift * treated
-        + rng.normal(0, spread.participant, design.participants)[participant]
-        + rng.normal(0, spread.scenario, design.scenarios)[scenario]
-        + rng.normal(0, spread.scenario_condition, (2, design.scenarios))[
-            treated.astype(np.int64), scenario
-        ]
-        + rng.logistic(size=len(participant))
-    )
+    trials = deal(design, model.spread, rng)
+    latent = model.shift * trials.treated + trials.effect + rng.logistic(size=len(trials.effect))
     exceeded = np.searchsorted(model.thresholds, latent)
     return Outcome(
         model.measure,
         model.unit,
         (model.lowest + exceeded).astype(np.float64),
-        treated,
-        participant,
-        scenario,
+        trials.treated,
+        trials.participant,
+        trials.scenario,
     )
+
+
+def deal(design: Design, spread: Spread, rng: np.random.Generator) -> Dealt:
+    """Deal scenarios to participants, and draw what both, and scenarios in arms, add."""
+    participant = np.repeat(np.arange(design.participants), design.trials_each)
+    treated = participant < design.treatment
+    arms = (design.treatment, design.reference)
+    scenario = np.concatenate([_dealt(design, size, rng) for size in arms]).ravel()
+    effect = (
+        rng.normal(0, spread.participant, design.participants)[participant]
+        + rng.normal(0, spread.scenario, design.scenarios)[scenario]
+        + rng.normal(0, spread.scenario_condition, (2, design.scenarios))[
+            treated.astype(np.int64), scenario
+        ]
+    )
+    return Dealt(treated, participant, scenario, effect)
 
 
 def _dealt(design: Design, participants: int, rng: np.random.Generator) -> NDArray[np.int64]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import polars as pl
 
+from .adjustment import Adjustment, adjust
 from .as_in_paper import PaperBlock, as_in_paper
 from .conclusions import Conclusion, conclude
 from .dataset import Dataset, outcome
@@ -25,7 +26,7 @@ from .statistics.calibration import (
     discrimination,
 )
 from .statistics.chance import against_chance
-from .statistics.cox import CoxResult, clustered_cox
+from .statistics.cox import CoxResult, TwoWayCox, clustered_cox, two_way_cox
 from .statistics.design_effect import TippingPoint, design_effect, tipping_icc
 from .statistics.intraclass import (
     IntraclassCorrelation,
@@ -33,7 +34,7 @@ from .statistics.intraclass import (
     intraclass_correlation_of_ranks,
 )
 from .statistics.outcome import Numbers
-from .statistics.survival import Incidence, cumulative_incidence, stops
+from .statistics.survival import Incidence, cumulative_incidence, ending_known, stops
 from .statistics.two_way import TwoWay
 
 
@@ -55,8 +56,9 @@ class Likeness:
 class Evidence:
     """The numbers of one analysis; mappings are by measure, a column of the trials.
 
-    `chance` and `discrimination` are of the treatment and of the reference arm. `exclusions` and
-    `devices` are None above `selections.MOST_TRIALS` trials.
+    `chance` and `discrimination` are of the treatment and of the reference arm; `adjustment` is
+    None where the plan names no covariates; `exclusions` and `devices` are None above
+    `selections.MOST_TRIALS` trials.
     """
 
     paper: PaperBlock
@@ -66,6 +68,8 @@ class Evidence:
     chance: tuple[TwoWay, TwoWay]
     incidence: Incidence
     cox: CoxResult
+    two_way_cox: TwoWayCox
+    adjustment: Adjustment | None
     by_confidence: AccuracyBy
     by_time: AccuracyBy
     discrimination: tuple[Discrimination, Discrimination]
@@ -80,9 +84,14 @@ def gather(data: Dataset) -> Evidence:
     comparisons = {each.measure: compare(data, each) for each in data.plan.primary}
     correct = outcome(data, "correct")
     confidence = _numbers(data, "confidence")
-    stop_time_s = _numbers(data, "stop_time_s")
+    stop_time_s, length_s = _numbers(data, "stop_time_s"), _numbers(data, "length_s")
     ends = stops(
-        stop_time_s, _numbers(data, "length_s"), correct.y, correct.treated, correct.participant
+        stop_time_s,
+        length_s,
+        correct.y,
+        correct.treated,
+        correct.participant,
+        correct.scenario,
     )
     selector = Selector(data, {measure: each.primary for measure, each in comparisons.items()})
     few = len(data.trials_before_exclusions) <= MOST_TRIALS
@@ -96,6 +105,8 @@ def gather(data: Dataset) -> Evidence:
         chance=against_chance(correct, data.plan.chance_level),
         incidence=cumulative_incidence(ends),
         cox=clustered_cox(ends),
+        two_way_cox=two_way_cox(ends),
+        adjustment=adjust(data, comparisons, ends, ending_known(stop_time_s, length_s, correct.y)),
         by_confidence=accuracy_by_confidence(correct, confidence, levels),
         by_time=accuracy_by_time(correct, stop_time_s),
         discrimination=discrimination(correct, confidence),

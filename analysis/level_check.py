@@ -1,7 +1,7 @@
 """How often do the tests find a difference where there is none? Their type I error, simulated.
 
-Both arms guess, and rate, alike in the simulated studies; what differs are participants, scenarios,
-and what a scenario happens to be like in one arm (its interaction with the condition).
+Both arms guess, rate and stop alike in the simulated studies; what differs are participants,
+scenarios, and what a scenario happens to be like in one arm (its interaction with the condition).
 """
 
 from __future__ import annotations
@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from .crossed_model import CrossedModel, Design, Spread, confidence_model, correct_model
-from .simulated_studies import ALPHA, Rejections, Tell, by_measure, rejections
+from .crossed_model import Design, Spread, confidence_model, correct_model
+from .simulated_stops import StopsModel
+from .simulated_studies import ALPHA, Model, Rejections, Tell, by_measure, rejections
 
 SHARE_CORRECT = 0.775
 """Of both arms: half way between the paper's 85 % and 70 %."""
@@ -53,7 +54,9 @@ def level_check(
     return LevelTable(tuple(spreads), studies, rows)
 
 
-def _without_difference(measure: str, spread: Spread) -> CrossedModel:
+def _without_difference(measure: str, spread: Spread) -> Model:
     if measure == "correct":
         return correct_model(spread, SHARE_CORRECT, SHARE_CORRECT)
-    return confidence_model(spread, auc=0.5)
+    if measure == "confidence":
+        return confidence_model(spread, auc=0.5)
+    return StopsModel(spread)

@@ -25,7 +25,10 @@ _TESTS = (
 
 def level(
     sds: Annotated[
-        str, typer.Option(help="SDs of participant/scenario/scenario x condition, in logits.")
+        str,
+        typer.Option(
+            help="SDs of participant/scenario/scenario x condition, in logits; log rates of stops."
+        ),
     ] = "0/0/0,.5/0/0,1/0/0,.8/.8/.4,.8/.5/.8",
     tests: Annotated[str, typer.Option(metavar="TEST,TEST,...", help="Tests to check.")] = ",".join(
         _TESTS
@@ -48,7 +51,8 @@ def level(
 
     Participants and scenarios differ, the conditions do not. With these tests it takes an hour; the
     mixed model (crossed_logistic) takes most of it. There are also crossed_ordinal,
-    two_way_auc_of_correct and two_way_difference_of_confidence.
+    two_way_auc_of_correct, two_way_difference_of_confidence, and cox and two_way_cox of the time to
+    a correct stop.
 
     Example: goalguess level --sds .8/.5/.8 --tests two_way_difference --participants 8/32
     """

@@ -25,6 +25,9 @@ PRIMARY_TESTS = ("two_way_difference", "two_way_auc")
 TIME_COLUMNS = {"penalised": "prediction_time_s", "stop": "stop_time_s"}
 """The column of the trials that each definition of time takes."""
 
+COVARIATES = ("trial_order", "age", "device")
+"""What the mixed models and the Cox regression can be adjusted for; primary tests never are."""
+
 _HYPOTHESES = {"correct": "H1", "time": "H2", "confidence": "H2"}
 """What the plan calls the measures, and the hypothesis each one is for."""
 
@@ -46,6 +49,7 @@ _KEYS = (
     "primary",
     "smallest_effect",
     "exclusions",
+    "covariates",
 )
 
 
@@ -66,7 +70,7 @@ class Plan:
     `holm_family` names, by their columns, the measures whose primary p values are corrected
     together; `choices` counts the areas to guess among; `smallest_effects` are the least that are
     of interest, by `share`, `auc` (from a half), `s` and `scale_points`, none where the plan names
-    none; `file` is where it was read from.
+    none; `covariates` are some of `COVARIATES`; `file` is where it was read from.
     """
 
     arms: Arms
@@ -78,6 +82,7 @@ class Plan:
     trials_per_participant: int
     exclusions: tuple[Exclusion, ...]
     smallest_effects: Mapping[str, float]
+    covariates: tuple[str, ...]
     seed: int
     file: str
 
@@ -107,6 +112,8 @@ class Plan:
         }
         if self.smallest_effects != SMALLEST_EFFECTS:
             said["smallest_effect"] = dict(self.smallest_effects)
+        if self.covariates:
+            said["covariates"] = list(self.covariates)
         return said
 
     @property
@@ -144,6 +151,7 @@ def _plan(file: str, content: Mapping[str, Any]) -> Plan:
         trials_per_participant=plan.whole("trials_per_participant", least=1),
         exclusions=tuple(_exclusion(each) for each in plan.sections("exclusions")),
         smallest_effects=_smallest_effects(plan.section("smallest_effect")),
+        covariates=_covariates(plan),
         seed=plan.whole("seed"),
         file=file,
     )
@@ -202,6 +210,14 @@ def _smallest_effects(section: Section) -> dict[str, float]:
             below = "" if largest == math.inf else f" and below {largest:g}"
             raise section.wrong(key, f"a number above 0{below}", section.content[key])
     return {**SMALLEST_EFFECTS, **named}
+
+
+def _covariates(plan: Section) -> tuple[str, ...]:
+    named = plan.content["covariates"]
+    chosen = [each for each in COVARIATES if isinstance(named, list) and each in named]
+    if not isinstance(named, list) or len(chosen) < len(named):
+        raise plan.wrong("covariates", f"a list of some of {', '.join(COVARIATES)}", named)
+    return tuple(chosen)
 
 
 def _exclusion(section: Section) -> Exclusion:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 from zlib import crc32
 
 import joblib
@@ -12,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .crossed_model import CrossedModel, Design, simulate
+from .simulated_stops import StopsModel, simulate_stops
 from .statistics.clustered import two_way_auc, two_way_difference
+from .statistics.cox import clustered_cox, two_way_cox
 from .statistics.estimates import Share, share
 from .statistics.gee import gee_logistic
 from .statistics.mixed_model import crossed_logistic
@@ -20,12 +23,16 @@ from .statistics.ordinal_mixed import crossed_ordinal
 from .statistics.outcome import Outcome
 from .statistics.ranks import mann_whitney
 from .statistics.result import TestResult
+from .statistics.survival import Stops
 from .statistics.two_by_two import TwoByTwo, chi_square
 
 ALPHA = 0.05
 """Two-sided."""
 
-Test = Callable[[Outcome], TestResult]
+Model = CrossedModel | StopsModel
+Test = Callable[[Any], TestResult]
+"""Takes an Outcome, or the Stops of a `StopsModel`."""
+
 Tell = Callable[[int], None]
 """Is told how many studies more are done."""
 
@@ -57,6 +64,7 @@ TESTS: Mapping[str, Mapping[str, Test]] = {
         "two_way_auc": two_way_auc,
         "two_way_difference_of_confidence": two_way_difference,
     },
+    "time_to_correct_stop": {"cox": clustered_cox, "two_way_cox": two_way_cox},
 }
 """Tests by the measure they are of, as the report runs them; every primary test of a plan is there.
 
@@ -80,7 +88,7 @@ class Rejections:
 
 
 def rejections(
-    model: CrossedModel,
+    model: Model,
     design: Design,
     tests: tuple[str, ...],
     studies: int,
@@ -110,7 +118,7 @@ def rejections(
 
 
 def _p_values(
-    model: CrossedModel,
+    model: Model,
     design: Design,
     tests: tuple[str, ...],
     key: tuple[int, ...],
@@ -119,6 +127,12 @@ def _p_values(
     """Return p of each study and test, NaN where undefined."""
     p = np.full((len(studies), len(tests)), np.nan)
     for row, study in zip(p, studies, strict=True):
-        outcome = simulate(model, design, np.random.default_rng((*key, study)))
-        row[:] = [TESTS[model.measure][test](outcome).p for test in tests]
+        trials = _drawn(model, design, np.random.default_rng((*key, study)))
+        row[:] = [TESTS[model.measure][test](trials).p for test in tests]
     return p
+
+
+def _drawn(model: Model, design: Design, rng: np.random.Generator) -> Outcome | Stops:
+    if isinstance(model, StopsModel):
+        return simulate_stops(model, design, rng)
+    return simulate(model, design, rng)

@@ -115,7 +115,7 @@ def normality_apa(test: Normality) -> str:
 def words_of_test(test: str) -> str:
     """Write the name of a test in words: two-way AUC for two_way_auc."""
     words = test.replace("two_way", "two-way").replace("_", " ")
-    return words.replace("auc", "AUC")
+    return words.replace("auc", "AUC").replace("cox", "Cox")
 
 
 def capital(text: str) -> str:

@@ -30,8 +30,7 @@ def apa_sentences(results: Results) -> tuple[str, ...]:
             for each in evidence.conclusions
             if each.model is not None
         ),
-        f"Rate of correct stops: {bracketed(evidence.cox)}, {statement(evidence.cox, plan.alpha)} "
-        f"({_arms(plan.arms)}; Cox regression, wrong stops censored, clustered by participant).",
+        _stops(evidence, plan),
         "With trials taken as independent, as in the original study: correct guesses, "
         f"{chi_square_apa(paper.correct.test)}.",
         *(
@@ -63,6 +62,17 @@ def _primary(conclusion: Conclusion, evidence: Evidence, plan: Plan) -> str:
         f"({_arms(plan.arms)}; trials clustered by participant and scenario)."
     )
     return " ".join((said, *excluded(conclusion, compared, plan.arms)))
+
+
+def _stops(evidence: Evidence, plan: Plan) -> str:
+    """Tell the test that speaks of other scenarios too, or else the one of other participants."""
+    two_way = evidence.two_way_cox.p is not None
+    test = evidence.two_way_cox if two_way else evidence.cox
+    return (
+        f"Rate of correct stops: {bracketed(test)}, {statement(test, plan.alpha)} "
+        f"({_arms(plan.arms)}; Cox regression, wrong stops censored, clustered by participant"
+        f"{' and scenario' if two_way else ''})."
+    )
 
 
 def _arms(arms: Arms) -> str:

@@ -47,7 +47,12 @@ def as_json(results: Results) -> dict[str, Any]:
             measure: _comparison(compared) for measure, compared in evidence.comparisons.items()
         },
         "likeness_of_trials": evidence.likeness,
-        "time_to_correct_stop": {"cox": evidence.cox, "cumulative_incidence": evidence.incidence},
+        "time_to_correct_stop": {
+            "two_way_cox": evidence.two_way_cox,
+            "cox": evidence.cox,
+            "cumulative_incidence": evidence.incidence,
+        },
+        "adjusted_for_covariates": evidence.adjustment,
         "against_chance": _by_arm(evidence.chance, chance_level=plan.chance_level),
         "accuracy": {
             "by_confidence": evidence.by_confidence,

@@ -11,7 +11,16 @@ from ..warning_texts import WARNINGS
 from ..wording import percent, without_zero
 from .answers import WORDS
 from .document import NOTHING, Grid, Heading, Items, Paragraph, Part, with_reason
-from .effects import beyond, bracketed, decimals_beside, interval, statement, statement_cell, value
+from .effects import (
+    beyond,
+    bracketed,
+    decimals_beside,
+    interval,
+    statement,
+    statement_cell,
+    value,
+)
+from .method_tables import HEADER, result_row
 
 _UNDEFINED = "not defined with these data; a note below says why"
 
@@ -70,27 +79,39 @@ def chance_parts(evidence: Evidence, plan: Plan) -> list[Part]:
 
 def stops_parts(evidence: Evidence, plan: Plan) -> list[Part]:
     """Return how trials ended, and the rate of correct stops."""
-    incidence, cox = evidence.incidence, evidence.cox
+    incidence, cox = evidence.incidence, evidence.two_way_cox
     rows = tuple(
         (label, f"{arm.n:,}", f"{arm.n_correct:,}", f"{arm.n_wrong:,}", f"{arm.n_censored:,}")
         for label, arm in zip(
             plan.arms.labels.values(), (incidence.treatment, incidence.reference), strict=True
         )
     )
+    by_clustering = [
+        ("Cox regression, clustered by participant and scenario", cox),
+        ("Cox regression, clustered by participant", evidence.cox),
+    ]
     return [
         Heading("Time to a correct stop", 3),
         Paragraph(
             "A stop with a wrong guess competes with a correct one, and who watches to the end is "
             f"censored there. Rate of correct stops, {plan.arms.treatment.label} against "
             f"{plan.arms.reference.label}: {bracketed(cox)}, {statement(cox, plan.alpha)} "
-            "(Cox regression, standard error clustered by participant)."
+            "(Cox regression, clustered by participant and scenario)."
         ),
         Grid(
             "How trials ended",
             ("", "trials", "correct stops", "wrong stops", "watched to the end"),
             rows,
         ),
-        *_notes([("Rate of correct stops", cox)]),
+        *with_reason(
+            Grid(
+                "Rate of correct stops, one estimate with its uncertainty by either clustering",
+                HEADER,
+                tuple(result_row(name, test, plan.alpha) for name, test in by_clustering),
+            ),
+            _UNDEFINED,
+        ),
+        *_notes(by_clustering),
     ]
 
 

@@ -94,7 +94,9 @@ def _sources(evidence: Evidence) -> tuple[str, ...]:
         for key, result in compared.results.items()
     ]
     run += [
+        ("Rate of correct stops", evidence.two_way_cox),
         ("Rate of correct stops", evidence.cox),
+        *_adjusted(evidence),
         ("Cumulative incidence", evidence.incidence),
         ("Against chance", evidence.chance[0]),
         ("Confidence, right against wrong", evidence.discrimination[0]),
@@ -111,6 +113,12 @@ def _sources(evidence: Evidence) -> tuple[str, ...]:
     ]
     told = (f"{name}: {result.method}. Source: {result.source}." for name, result in run)
     return tuple(dict.fromkeys(told))
+
+
+def _adjusted(evidence: Evidence) -> Iterator[tuple[str, TestResult]]:
+    if evidence.adjustment is not None:
+        for model in evidence.adjustment.models.values():
+            yield "Adjusted for covariates", model.effect
 
 
 def _plan(plan: Plan) -> list[Part]:

@@ -18,8 +18,10 @@ PRIMARY = " (primary)"
 """What the primary test's name ends with."""
 
 _CLUSTERED = "taking into account that trials of one participant resemble each other"
-_LACKING = "the method gives none, or a note below says why there is none"
-_HEADER = ("", "estimate", "95 % interval", "test", "p", "n")
+LACKING = "the method gives none, or a note below says why there is none"
+"""Why a table of results may lack a number."""
+HEADER = ("", "estimate", "95 % interval", "test", "p", "n")
+"""Of `result_row`."""
 
 
 def method_parts(compared: Comparison, alpha: float) -> list[Part]:
@@ -33,8 +35,8 @@ def method_parts(compared: Comparison, alpha: float) -> list[Part]:
         (f"{name}, trials taken as independent", True),
     ):
         keys = [key for key in compared.results if (key in INDEPENDENT) == independent]
-        rows = (_row(names[key], compared.results[key], alpha) for key in keys)
-        parts += with_reason(Grid(caption, _HEADER, tuple(rows)), _LACKING)
+        rows = (result_row(names[key], compared.results[key], alpha) for key in keys)
+        parts += with_reason(Grid(caption, HEADER, tuple(rows)), LACKING)
     notes = tuple(_notes(compared, names))
     return [*parts, Items(notes)] if notes else parts
 
@@ -65,7 +67,8 @@ def p_cell(p: float | None, alpha: float) -> str:
     return NOTHING if p is None else format_p(p, alpha=alpha).removeprefix("p ").removeprefix("= ")
 
 
-def _row(name: str, result: TestResult, alpha: float) -> tuple[str, ...]:
+def result_row(name: str, result: TestResult, alpha: float) -> tuple[str, ...]:
+    """Write a result as a row of a table."""
     has_test = result.p is not None or result.warnings
     return (
         name,

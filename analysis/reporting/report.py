@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from ..results import Results
 from ..statistics.codes import NO_SCENARIO_SHARED
 from ..wording import capital
+from .adjusted_tables import adjusted_parts
 from .answers import answers
 from .apa import apa_sentences
 from .design_tables import chance_parts, discrimination_parts, likeness_parts, stops_parts
@@ -50,6 +51,7 @@ def report_parts(
             for part in method_parts(compared, plan.alpha)
         ),
         *stops_parts(evidence, plan),
+        *adjusted_parts(evidence, plan),
         *chance_parts(evidence, plan),
         *discrimination_parts(evidence, plan),
         *paper_parts(evidence.paper, exported=data.exported),

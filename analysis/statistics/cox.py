@@ -1,27 +1,31 @@
 """How much sooner trials of one arm come to a correct stop: Cox regression on the arm.
 
-Own code: statsmodels' PHReg and lifelines' CoxPHFitter estimate the same, but take half a minute
-for 100,000 trials; on one binary covariate every sum of the method is a count by arm and time.
+The estimate is one, its uncertainty is told twice: with participants as the clusters, and with
+participants and scenarios. It is the ratio over all scenarios together. Strata by scenario would
+ask for the ratio within each; under no difference both are 1 where scenarios differ in their
+rates, or differ between the arms by chance, and both hold their level with the two-way variance.
+Without strata both tests are of one ratio, and no scenario seen in one arm only is lost.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .codes import FEW_CLUSTERS, NO_VARIATION, ONE_PARTICIPANT, SEPARATION
+from .codes import FEW_CLUSTERS, NO_VARIATION, NOT_CONVERGED, ONE_PARTICIPANT, SEPARATION
+from .cox_fit import CoxFit, CoxLikelihood
 from .estimates import LEVEL
-from .inference import FEW
-from .outcome import Numbers
+from .inference import FEW, undefined
+from .influence import Influence, cluster_count
+from .outcome import Numbers, Outcome
 from .result import TestResult
 from .survival import CORRECT, Stops
+from .two_way import SOURCE, TwoWay, TwoWayInference, two_way
 
-_REACH = 100.0
-"""No finite estimate lies outside +-_REACH: log hazard ratios are of the order of log N."""
+UNIT = "log hazard ratio"
+METHOD = "Cox regression of the time to a correct stop, wrong stops censored, Efron ties"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,28 +44,14 @@ class CoxResult(TestResult):
     n_participants: int
 
 
-class _Terms(NamedTuple):
-    """The partial likelihood: a term for each of E correct stops at U different times.
+@dataclass(frozen=True, kw_only=True)
+class TwoWayCox(TwoWay):
+    """The same log hazard ratio with the variance by participants and scenarios."""
 
-    Of shape (U,): `times_s`, `events` at each; of shape (E,): `at`, number of the stop's time;
-    `gone`, the share of the stops tied with it that Efron counts as over; `treated`, `reference`:
-    how many are at risk, less the share that is gone.
-    """
-
-    times_s: Numbers
-    events: NDArray[np.int64]
-    at: NDArray[np.int64]
-    gone: Numbers
-    treated: Numbers
-    reference: Numbers
-
-    def mean(self, estimate: float) -> Numbers:
-        """Return the treatment arm's share of the rate of correct stops at each, shape (E,)."""
-        return self.treated * math.exp(estimate) / self.rate(estimate)
-
-    def rate(self, estimate: float) -> Numbers:
-        """Return the rate of correct stops at each in trials of the reference arm, shape (E,)."""
-        return self.reference + self.treated * math.exp(estimate)
+    hazard_ratio: float | None
+    hazard_ratio_low: float | None
+    hazard_ratio_high: float | None
+    n_events: int
 
 
 def clustered_cox(stops: Stops) -> CoxResult:
@@ -75,62 +65,98 @@ def clustered_cox(stops: Stops) -> CoxResult:
     O(N log N). Source: Cox (1972), Efron (1977), Lin and Wei (1989), as R's survival::coxph with
     `cluster`.
     """
-    from scipy import optimize
-
-    correct = stops.ending == CORRECT
-    terms = _terms(stops, correct)
-    of_treated = int((correct & stops.treated).sum())
-    if of_treated in (int((terms.reference == 0).sum()), int((terms.treated > 0).sum())):
-        return _result(stops, warnings=(SEPARATION,))
-    estimate = float(optimize.brentq(lambda at: of_treated - terms.mean(at).sum(), -_REACH, _REACH))
-    mean = terms.mean(estimate)
-    information = float((mean * (1 - mean)).sum())
-    naive_se = information**-0.5
+    fit, reason = fitted(stops)
+    if fit is None:
+        return _result(stops, warnings=(reason,))
+    estimate, naive_se = float(fit.coefficients[0]), float(fit.naive[0, 0]) ** 0.5
     if 1 in stops.participants_per_arm:
         return _result(stops, estimate, naive_se, warnings=(ONE_PARTICIPANT,))
-    of_participant = np.bincount(
-        stops.participant, _score_residuals(stops, correct, terms, estimate)
-    )
-    se = float(np.sqrt(of_participant @ of_participant)) / information
+    of_participant = np.bincount(stops.participant, fit.influence[:, 0])
+    se = float(np.sqrt(of_participant @ of_participant))
     if se < 1e-9 * naive_se:
         return _result(stops, estimate, naive_se, warnings=(NO_VARIATION,))
     few = (FEW_CLUSTERS,) if min(stops.participants_per_arm) < FEW else ()
     return _result(stops, estimate, naive_se, se, warnings=few)
 
 
-def _terms(stops: Stops, correct: NDArray[np.bool_]) -> _Terms:
-    """Count who is at risk at every correct stop."""
-    times_s, number, events = np.unique(
-        stops.time_s[correct], return_inverse=True, return_counts=True
+def two_way_cox(stops: Stops) -> TwoWayCox:
+    """Test the same for other participants and other scenarios alike.
+
+    Influence values are score residuals times the naive variance; their sums over participants,
+    scenarios and trials make the variance, and t is tested, as in every two-way test (see
+    two_way). The ratio is marginal: of all trials, whatever their scenario. Each arm has much the
+    same scenarios, so what scenarios have in common between the arms cancels, and what they do not
+    is in the variance by scenario. `separation` as in clustered_cox. Source: Lin and Wei (1989),
+    Journal of the American Statistical Association 84, 1074-1078; Cameron, Gelbach and Miller
+    (2011).
+    """
+    return result_of(stops, *fitted(stops))
+
+
+def result_of(stops: Stops, fit: CoxFit | None, reason: str, adjusted: str = "") -> TwoWayCox:
+    """Return the two-way test of the arm in a fit, or that there is none; as `fitted` tells."""
+    inference = (
+        _undefined_two_way(stops, reason) if fit is None else coefficient_test(stops, fit, 0)
     )
-    at = np.repeat(np.arange(len(times_s)), events)
-    gone = (np.arange(len(at)) - (np.cumsum(events) - events)[at]) / events[at]
-    at_risk = []
-    for arm in (stops.treated, ~stops.treated):
-        ends = np.sort(stops.time_s[arm])
-        there = len(ends) - np.searchsorted(ends, times_s, side="left")
-        here = np.bincount(number[arm[correct]], minlength=len(times_s))
-        at_risk.append(there[at] - gone * here[at])
-    return _Terms(times_s, events, at, gone, *at_risk)
+    ratio, low, high = _ratios(inference["estimate"], inference["low"], inference["high"])
+    return TwoWayCox(
+        **inference,
+        unit=UNIT,
+        n=len(stops.time_s),
+        n_missing=stops.n_missing,
+        method=f"{METHOD}{adjusted}, variance two-way clustered by participant and scenario",
+        source=f"Cox (1972), Lin and Wei (1989); {SOURCE}",
+        hazard_ratio=ratio,
+        hazard_ratio_low=low,
+        hazard_ratio_high=high,
+        n_events=int((stops.ending == CORRECT).sum()),
+    )
 
 
-def _score_residuals(
-    stops: Stops, correct: NDArray[np.bool_], terms: _Terms, estimate: float
-) -> Numbers:
-    """Return each trial's share in the score, shape (N,); they sum to 0 at the estimate."""
-    n_times = len(terms.times_s)
-    mean, rate = terms.mean(estimate), terms.rate(estimate)
-    passed = np.searchsorted(terms.times_s, stops.time_s, side="right")
-    residuals = np.empty(len(stops.time_s))
-    for arm, of_arm in ((1.0, stops.treated), (0.0, ~stops.treated)):
-        pull = math.exp(estimate * arm) * (arm - mean) / rate
-        own = (arm - mean) / terms.events[terms.at] + terms.gone * pull
-        at_risk = np.append(0.0, np.cumsum(np.bincount(terms.at, pull, n_times)))
-        at_stop = np.bincount(terms.at, own, n_times)
-        residuals[of_arm] = -at_risk[passed[of_arm]]
-        stopped = of_arm & correct
-        residuals[stopped] += at_stop[passed[stopped] - 1]
-    return residuals
+def fitted(stops: Stops, covariates: Numbers | None = None) -> tuple[CoxFit | None, str]:
+    """Fit the arm, and covariates, shape (N, K), beside it; if there is no fit, why not."""
+    columns = [stops.treated[:, None].astype(np.float64)]
+    if covariates is not None:
+        columns.append(covariates)
+    likelihood = CoxLikelihood(stops.time_s, stops.ending == CORRECT, np.hstack(columns))
+    if likelihood.is_separated(stops.treated):
+        return None, SEPARATION
+    return likelihood.fit(), NOT_CONVERGED
+
+
+def coefficient_test(stops: Stops, fit: CoxFit, column: int) -> TwoWayInference:
+    """Test one coefficient of a fit against 0, clustered by participant and scenario."""
+    influence = Influence(float(fit.coefficients[column]), fit.influence[:, column])
+    return two_way(_trials(stops), influence, 0.0)
+
+
+def _undefined_two_way(stops: Stops, reason: str) -> TwoWayInference:
+    """Return that nothing is known, and why."""
+    data = _trials(stops)
+    return TwoWayInference(
+        **undefined(None, 0.0, reason),
+        v_participant=None,
+        v_scenario=None,
+        v_trial=None,
+        participants=cluster_count(data.participant),
+        scenarios=cluster_count(data.scenario[data.scenario >= 0]),
+    )
+
+
+def _trials(stops: Stops) -> Outcome:
+    """The trials as the two-way variance takes them."""
+    return Outcome(
+        "time to a correct stop",
+        UNIT,
+        stops.time_s,
+        stops.treated,
+        stops.participant,
+        stops.scenario,
+    )
+
+
+def _ratios(*logs: float | None) -> tuple[float | None, ...]:
+    return tuple(None if log is None else math.exp(log) for log in logs)
 
 
 def _result(
@@ -149,22 +175,19 @@ def _result(
         half = float(stats.norm.ppf((1 + LEVEL) / 2)) * se
         low, high, z = estimate - half, estimate + half, estimate / se
         p = float(2 * stats.norm.sf(abs(z)))
-    ratio, ratio_low, ratio_high = (
-        None if log is None else math.exp(log) for log in (estimate, low, high)
-    )
+    ratio, ratio_low, ratio_high = _ratios(estimate, low, high)
     return CoxResult(
         estimate=estimate,
         low=low,
         high=high,
         null=0.0,
-        unit="log hazard ratio",
+        unit=UNIT,
         symbol="z",
         statistic=z,
         p=p,
         n=len(stops.time_s),
         n_missing=stops.n_missing,
-        method="Cox regression of the time to a correct stop, wrong stops censored, Efron ties, "
-        "standard error clustered by participant",
+        method=f"{METHOD}, standard error clustered by participant",
         source="as R survival::coxph(cluster = participant); Cox (1972), Lin and Wei (1989)",
         se=se,
         warnings=warnings,

@@ -1,4 +1,4 @@
-"""Maximum likelihood of the model with an arm and crossed random factors.
+"""Maximum likelihood of the model with an arm, covariates and crossed random factors.
 
 On the scale of the standard deviations themselves the likelihood is even in each of them, so a
 variance that is estimated as 0 is an ordinary stationary point: the Hessian has no covariance
@@ -36,27 +36,32 @@ _REACH = 20.0
 class CrossedFit:
     """Estimates on the logit scale at the maximum of the likelihood.
 
-    `location`: log odds, halfway between the arms, of any category above the first; `effect`: log
-    odds ratio of higher categories, treatment against reference; `sds`, shape (F,): standard
-    deviations of the factors' effects. `covariance`, shape (2 + F, 2 + F): of location, effect and
-    sds, 0 for those held at 0. `at`, `hessian`: where the search ended and the curvature there.
+    `location`: log odds, halfway between the arms and at the covariates' means, of any category
+    above the first; `effect`: log odds ratio of higher categories, treatment against reference;
+    `sds`, shape (F,): standard deviations of the factors' effects. `covariance`, shape (2 + F,
+    2 + F): of location, effect and sds, 0 for those held at 0. `covariates`, shape (K,): log odds
+    ratios of one unit more of each, `covariate_ses` their standard errors. `at`, `hessian`: where
+    the search ended, covariates in standard deviations, and the curvature there.
     """
 
     location: float
     effect: float
     sds: Numbers
     covariance: Numbers
+    covariates: Numbers
+    covariate_ses: Numbers
     log_likelihood: float
     at: Numbers
     hessian: Numbers
 
 
 class CrossedModel:
-    """The model category ~ arm + random factors, of one measure.
+    """The model category ~ arm + covariates + random factors, of one measure.
 
     `category` in 0..C-1, none empty, C > 1; `treated` both true and false; `factors`: numbers
     from 0 of the levels of each trial, or None for a factor whose standard deviation is held at 0;
-    all of shape (N,).
+    all of shape (N,). `covariates`, shape (N, K), None for none: columns that are no linear
+    combination of a constant, the arm and each other.
     """
 
     def __init__(
@@ -64,13 +69,21 @@ class CrossedModel:
         category: NDArray[np.int64],
         treated: Flags,
         factors: Sequence[Clusters | None],
+        covariates: Numbers | None = None,
     ) -> None:
         levels = [np.zeros_like(category) if each is None else each for each in factors]
         sds = np.where([each is None for each in factors], 0.0, 0.5)
-        self._likelihood = CrossedLikelihood(category, np.where(treated, 0.5, -0.5), levels)
-        self._start = np.concatenate([_independent(category, treated), sds])
+        if covariates is None:
+            covariates = np.empty((len(category), 0))
+        self._scales = covariates.std(axis=0)
+        scaled = (covariates - covariates.mean(axis=0)) / self._scales
+        fixed = np.column_stack([np.where(treated, 0.5, -0.5), scaled])
+        self._likelihood = CrossedLikelihood(category, fixed, levels)
+        start = _independent(category, treated)
+        self._start = np.concatenate([start, np.zeros(scaled.shape[1]), sds])
         self._effect = int(category.max())
-        self._free = np.concatenate([np.full(self._effect + 1, True), sds > 0])
+        self._first_sd = len(start) + scaled.shape[1]
+        self._free = np.concatenate([np.full(self._first_sd, True), sds > 0])
 
     def fit(self) -> CrossedFit | None:
         """Return the estimates; None if the search finds no finite maximum."""
@@ -102,18 +115,26 @@ class CrossedModel:
         """Read estimates and covariance off the parameters; the sign of an sd has no meaning."""
         everything = np.zeros((len(at), len(at)))
         everything[np.ix_(self._free, self._free)] = np.linalg.inv(hessian)
-        reported = np.r_[0, self._effect : len(at)]
-        signs = np.concatenate([[-1.0, 1.0], np.where(at[self._effect + 1 :] < 0, -1.0, 1.0)])
+        reported = np.r_[0, self._effect, self._first_sd : len(at)]
+        signs = np.concatenate([[-1.0, 1.0], np.where(at[self._first_sd :] < 0, -1.0, 1.0)])
         location, effect, *sds = signs * at[reported]
-        covariance = everything[np.ix_(reported, reported)] * np.outer(signs, signs)
+        beside = slice(self._effect + 1, self._first_sd)
         return CrossedFit(
-            float(location), float(effect), np.array(sds), covariance, log_likelihood, at, hessian
+            location=float(location),
+            effect=float(effect),
+            sds=np.array(sds),
+            covariance=everything[np.ix_(reported, reported)] * np.outer(signs, signs),
+            covariates=at[beside] / self._scales,
+            covariate_ses=np.sqrt(np.diag(everything)[beside]) / self._scales,
+            log_likelihood=log_likelihood,
+            at=at,
+            hessian=hessian,
         )
 
     def _descent(self, start: Numbers, free: Flags) -> Descent:
         """Return minus log-likelihood and gradient as a function of the free parameters.
 
-        All parameters: first threshold, log gaps between thresholds, effect, sds.
+        All parameters: first threshold, log gaps between thresholds, effect, covariates, sds.
         """
 
         def descent(values: Numbers) -> tuple[float, Numbers]:
@@ -121,10 +142,11 @@ class CrossedModel:
             at[free] = values
             gaps = np.exp(np.clip(at[1 : self._effect], -_REACH, _REACH))
             thresholds = at[0] + np.concatenate([[0.0], np.cumsum(gaps)])
-            slopes = self._likelihood(thresholds, at[self._effect], at[self._effect + 1 :])
+            fixed, sds = at[self._effect : self._first_sd], at[self._first_sd :]
+            slopes = self._likelihood(thresholds, fixed, sds)
             by_shift = np.cumsum(slopes.thresholds[::-1])[::-1]
             gradient = np.concatenate(
-                [by_shift[:1], by_shift[1:] * gaps, [slopes.slope], slopes.sds]
+                [by_shift[:1], by_shift[1:] * gaps, slopes.slopes, slopes.sds]
             )
             return -slopes.value, -gradient[free]
 

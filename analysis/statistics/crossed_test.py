@@ -28,7 +28,7 @@ from .degrees_of_freedom import (
 )
 from .inference import FEW, Inference, student, undefined
 from .influence import cluster_count, of_auc
-from .outcome import Clusters, Outcome
+from .outcome import Clusters, Numbers, Outcome
 from .result import TestResult
 
 _NO_SD = 1e-3
@@ -61,9 +61,16 @@ class CrossedResult(TestResult):
 
 
 def crossed_test(
-    outcome: Outcome, *, interaction: bool, method: str, source: str
+    outcome: Outcome,
+    *,
+    interaction: bool,
+    method: str,
+    source: str,
+    covariates: Numbers | None = None,
 ) -> tuple[CrossedResult, CrossedFit | None]:
     """Fit values ~ arm + (1 | participant) + (1 | scenario) [+ (1 | scenario in arm)], and test.
+
+    `covariates`, shape (N, K), are further fixed effects of the N trials that have a value.
 
     By t on the degrees of freedom of the two-way AUC, which for values 0 and 1 are those of the
     two-way difference; the standard error counts in that variances are estimated. No estimate, and
@@ -82,7 +89,7 @@ def crossed_test(
     fit = ratio = None
     if reason is None:
         category: NDArray[np.int64] = np.unique(data.y, return_inverse=True)[1]
-        model = CrossedModel(category, data.treated, factors)
+        model = CrossedModel(category, data.treated, factors, covariates)
         with threadpool_limits(1, user_api="blas"):
             fit = model.fit()
             if fit is not None:

@@ -1,7 +1,7 @@
 """Laplace's approximation to the likelihood of crossed random effects on a logit scale.
 
 Trial i falls into category c of 0..C-1 with P(c <= k) = F(alpha_k - eta_i), F the logistic function
-and alpha increasing; eta_i = slope x_i + sum over factors f of sd_f u[level of i in f], all u
+and alpha increasing; eta_i = slopes . x_i + sum over factors f of sd_f u[level of i in f], all u
 standard normal. Two categories make the logistic model with intercept -alpha_0; more make the
 cumulative logit model.
 
@@ -29,11 +29,11 @@ _CLOSE = 1e-18
 
 
 class Slopes(NamedTuple):
-    """A log-likelihood and its derivatives by thresholds (C-1,), slope and sds (F,)."""
+    """A log-likelihood and its derivatives by thresholds (C-1,), slopes (K,) and sds (F,)."""
 
     value: float
     thresholds: Numbers
-    slope: float
+    slopes: Numbers
     sds: Numbers
 
 
@@ -57,11 +57,11 @@ class _Bounds(NamedTuple):
 
 
 class CrossedLikelihood:
-    """The log-likelihood of N trials, a function of thresholds, slope and standard deviations.
+    """The log-likelihood of N trials, a function of thresholds, slopes and standard deviations.
 
-    `category` in 0..C-1, none empty; `x` any covariate; `factors`: numbers from 0 of the levels
-    of each trial, the factor with most levels first; all of shape (N,). It remembers the modes it
-    found, to start from them.
+    `category`, shape (N,), in 0..C-1, none empty; `x`, shape (N, K): any K fixed effects;
+    `factors`: numbers from 0 of the levels of each trial, each of shape (N,), the factor with most
+    levels first. It remembers the modes it found, to start from them.
     """
 
     def __init__(
@@ -72,10 +72,10 @@ class CrossedLikelihood:
         self.crossing = Crossing(factors)
         self._mode = np.zeros(len(self.crossing.factor))
 
-    def __call__(self, thresholds: Numbers, slope: float, sds: Numbers) -> Slopes:
+    def __call__(self, thresholds: Numbers, slopes: Numbers, sds: Numbers) -> Slopes:
         """Return log-likelihood and derivatives; at sd 0 its derivative is 0."""
         scale = sds[self.crossing.factor]
-        bounds, precision = self._find_mode(thresholds, slope, sds)
+        bounds, precision = self._find_mode(thresholds, slopes, sds)
         mode = self._mode
         covariances = np.einsum("g,fgn->fn", sds, precision.covariances())
         variance = sds @ covariances
@@ -89,18 +89,18 @@ class CrossedLikelihood:
         return Slopes(
             float(bounds.log_likelihood - mode @ mode / 2 - precision.log_determinant / 2),
             self._by_threshold(score, thresholds),
-            float(self.x @ score.sum(axis=0)),
+            score.sum(axis=0) @ self.x,
             np.bincount(self.crossing.factor, per_level) - covariances @ bounds.density.sum(axis=0),
         )
 
     def _find_mode(
-        self, thresholds: Numbers, slope: float, sds: Numbers
+        self, thresholds: Numbers, slopes: Numbers, sds: Numbers
     ) -> tuple[_Bounds, Precision]:
         """Leave the most probable effects in `_mode`, by Newton's method with halved steps.
 
         The joint density is log-concave in them: there is one mode, and every start finds it.
         """
-        scale, fixed = sds[self.crossing.factor], slope * self.x
+        scale, fixed = sds[self.crossing.factor], self.x @ slopes
         u = self._mode
         bounds = self._bounds(thresholds, fixed + self.crossing.totals(scale * u))
         for _ in range(_MOST_STEPS):

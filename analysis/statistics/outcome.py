@@ -49,12 +49,12 @@ class Outcome:
             self.unit,
             self.y[there],
             treated,
-            *(_anew(each[there]) for each in (self.participant, self.scenario)),
+            *(renumbered(each[there]) for each in (self.participant, self.scenario)),
         )
 
 
-def _anew(cluster: Clusters) -> Clusters:
-    """Number the clusters without gaps; what is unknown stays so."""
+def renumbered(cluster: Clusters) -> Clusters:
+    """Number clusters, shape (N,), without gaps; what is unknown stays so."""
     known = cluster != UNKNOWN
     numbered = np.full_like(cluster, UNKNOWN)
     numbered[known] = np.unique(cluster[known], return_inverse=True)[1]

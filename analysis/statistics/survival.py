@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..errors import EmptyArmError
 from .codes import ONE_PARTICIPANT
 from .estimates import LEVEL
-from .outcome import Clusters, Numbers
+from .outcome import Clusters, Numbers, renumbered
 
 CENSORED, CORRECT, WRONG = 0, 1, 2
 """How a trial ended: watched to the end, stopped and guessed right, stopped and guessed wrong."""
@@ -29,13 +29,15 @@ class Stops:
     """How N trials ended, all arrays of shape (N,); `n_missing` more could not be used.
 
     `time_s` is the motion seen, in s, until the trial ended; `ending[i]` is CENSORED, CORRECT or
-    WRONG; `treated[i]`: whether trial i is of the treatment arm; `participant[i]`: number from 0.
+    WRONG; `treated[i]`: whether trial i is of the treatment arm; `participant[i]`, `scenario[i]`:
+    numbers from 0, `UNKNOWN` where a scenario is not known.
     """
 
     time_s: Numbers
     ending: NDArray[np.int8]
     treated: NDArray[np.bool_]
     participant: Clusters
+    scenario: Clusters
     n_missing: int
 
     @property
@@ -98,13 +100,14 @@ def stops(
     correct: Numbers,
     treated: NDArray[np.bool_],
     participant: Clusters,
+    scenario: Clusters,
 ) -> Stops:
     """Tell how each trial ended; all arrays of shape (N,), NaN where missing.
 
     `correct` is 1 or 0; a stop at `length_s` is no stop. A trial that lacks one of the three is
     left out; EmptyArmError if an arm has none left.
     """
-    known = ~(np.isnan(stop_time_s) | np.isnan(length_s) | np.isnan(correct))
+    known = ending_known(stop_time_s, length_s, correct)
     for arm, of_arm in (("treatment", treated), ("reference", ~treated)):
         if not (known & of_arm).any():
             raise EmptyArmError(arm, "stop time")
@@ -114,9 +117,15 @@ def stops(
         time_s=stop_time_s[known],
         ending=ending[known].astype(np.int8),
         treated=treated[known],
-        participant=np.unique(participant[known], return_inverse=True)[1],
+        participant=renumbered(participant[known]),
+        scenario=renumbered(scenario[known]),
         n_missing=int((~known).sum()),
     )
+
+
+def ending_known(stop_time_s: Numbers, length_s: Numbers, correct: Numbers) -> NDArray[np.bool_]:
+    """Tell of which trials it is known how they ended; all arrays of shape (N,)."""
+    return ~(np.isnan(stop_time_s) | np.isnan(length_s) | np.isnan(correct))
 
 
 def cumulative_incidence(stops: Stops) -> Incidence:

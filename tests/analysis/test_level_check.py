@@ -38,6 +38,15 @@ def test_two_way_tests_hold_their_level_where_tests_on_trials_do_not(two_way, on
     assert clustered > 0.2
 
 
+def test_the_two_way_cox_holds_its_level_where_the_one_by_participant_does_not():
+    table = checked(("two_way_cox", "cox"), (NONE, HARD))
+    most = 0.05 + 1.6 * table.monte_carlo_error
+    assert all(each <= most for each in shares(table, "two_way_cox"))
+    participants_alone, both = shares(table, "cox")
+    assert participants_alone <= 0.05 + 2.5 * table.monte_carlo_error
+    assert both > 0.12
+
+
 def test_the_level_of_models_is_checked_too():
     table = checked(("gee_logistic", "crossed_logistic"), (HARD,), studies=2, participants=20)
     assert [each.rejected.n for row in table.rows.values() for each in row] == [2, 2]

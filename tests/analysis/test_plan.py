@@ -67,10 +67,24 @@ def test_the_hash_is_of_what_is_said_and_not_of_how(plan_of):
     )
 
 
+def test_a_plan_registered_before_a_key_came_keeps_its_hash(plan_of):
+    """The default plan's, when plans could not name covariates yet."""
+    registered = "cad9258a0f4a10c18e7ea7c820ab2bde79abb2e4e96ad6cd819bc9c41a15cda8"
+    assert default_plan().sha256 == registered
+    assert plan_of("covariates = []").sha256 == registered
+
+
+def test_covariates_are_told_in_one_order(plan_of):
+    plan = plan_of('covariates = ["device", "trial_order"]')
+    assert plan.covariates == ("trial_order", "device")
+    assert plan.content["covariates"] == ["trial_order", "device"]
+
+
 @pytest.mark.parametrize(
     "change",
     [
         "alpha = 0.049",
+        'covariates = ["age"]',
         'time = "stop"',
         'holm_family = ["time", "confidence"]',
         "choices = 5",
@@ -118,6 +132,9 @@ def test_every_change_of_what_is_said_changes_the_hash(plan_of, change):
         ('holm_family = ["time", "time"]', "holm_family", "list of some of"),
         ('holm_family = [["time"]]', "holm_family", "list of some of"),
         ('holm_family = "time"', "holm_family", "list of some of"),
+        ('covariates = ["gender"]', "covariates", "list of some of trial_order, age, device, got"),
+        ('covariates = ["age", "age"]', "covariates", "list of some of"),
+        ('covariates = "age"', "covariates", "list of some of trial_order, age, device, got 'age'"),
         ("exclusions = 3", "exclusions", "expected a list of tables, got 3"),
         ("exclusions = [3]", "exclusions[1]", "expected a table, got 3"),
         ('[[exclusions]]\nrule = "dull"', "exclusions[1].rule", "expected incomplete or "),

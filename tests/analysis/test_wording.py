@@ -103,7 +103,11 @@ def test_normality_prints_its_statistic():
 
 @pytest.mark.parametrize(
     ("test", "words"),
-    [("two_way_difference", "two-way difference"), ("clustered_auc", "clustered AUC")],
+    [
+        ("two_way_difference", "two-way difference"),
+        ("clustered_auc", "clustered AUC"),
+        ("two_way_cox", "two-way Cox"),
+    ],
 )
 def test_tests_are_named_in_words(test, words):
     assert words_of_test(test) == words

@@ -17,6 +17,7 @@ def incidence(participant=(0, 1, 2, 3, 4, 5, 6, 7)):
             correct=np.array([1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0]),
             treated=np.arange(8) < 4,
             participant=np.array(participant),
+            scenario=np.zeros(8, dtype=np.int64),
         )
     )
 
@@ -54,7 +55,7 @@ def correct_stops(stop_time_s, length_s):
     """The same in both arms, a participant a trial."""
     n = len(stop_time_s)
     twice = np.tile(stop_time_s, 2), np.tile(length_s, 2)
-    ends = stops(*twice, np.ones(2 * n), np.arange(2 * n) < n, np.arange(2 * n))
+    ends = stops(*twice, np.ones(2 * n), np.arange(2 * n) < n, np.arange(2 * n), np.arange(2 * n))
     return cumulative_incidence(ends)
 
 

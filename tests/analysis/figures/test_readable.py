@@ -68,6 +68,7 @@ def incidence(study: pl.DataFrame):
             numbers(study, "correct"),
             study["treated"].to_numpy(),
             study["participant"].to_numpy(),
+            study["scenario"].to_numpy(),
         )
     )
 

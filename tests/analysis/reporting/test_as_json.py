@@ -149,6 +149,7 @@ def test_what_is_not_finite_is_null(paper):
     report = as_json(replace(paper, evidence=replace(paper.evidence, cox=cox)))
     assert report["time_to_correct_stop"]["cox"]["estimate"] is None
     assert report["time_to_correct_stop"]["cox"]["low"] is None
+    assert report["time_to_correct_stop"]["two_way_cox"]["df"] == 36
 
 
 def test_the_plans_definition_of_time_and_its_arms_are_followed(paper_fixture, tmp_path):

@@ -96,6 +96,28 @@ def test_the_order_is_answer_figures_tables_fine_print(paper):
     ]
 
 
+def test_the_rate_of_correct_stops_is_told_by_either_clustering(paper):
+    text = markdown(report_parts(paper))
+    assert "95 % CI [1.47, 2.00], t(36) = 7.02, p < .001 (Cox regression, clustered by" in text
+    for row in (
+        "| Cox regression, clustered by participant and scenario | hazard ratio 1.71 | 1.47 to ",
+        "| Cox regression, clustered by participant | hazard ratio 1.71 | 1.48 to 1.98 | z = ",
+        "- Rate of correct stops: Cox regression of the time to a correct stop, wrong stops "
+        "censored, Efron ties, variance two-way clustered by participant and scenario. Source: ",
+    ):
+        assert row in text
+
+
+def test_a_sentence_on_stops_speaks_of_scenarios_where_they_can_be_told(paper, tmp_path):
+    (sentence,) = (each for each in apa_sentences(paper) if each.startswith("Rate of"))
+    assert sentence.endswith("censored, clustered by participant and scenario).")
+    rows = [row | {"scenario": "S1"} for row in six_participants()]
+    of_one = analyse_path(write_table(TRIALS, rows, tmp_path)[0])
+    (sentence,) = (each for each in apa_sentences(of_one) if each.startswith("Rate of"))
+    assert " z = " in sentence
+    assert sentence.endswith("censored, clustered by participant).")
+
+
 def test_what_cannot_be_tested_is_said_so(tmp_path):
     results = analyse_path(one_trial_an_arm(tmp_path))
     answers = [part for part in report_parts(results) if isinstance(part, Finding)]

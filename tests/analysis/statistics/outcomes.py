@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from analysis.statistics.outcome import Outcome
+from analysis.statistics.survival import Stops, stops
 
 
 def outcome(y, treated, participant, scenario, name="measure", unit="points") -> Outcome:
@@ -16,6 +17,28 @@ def outcome(y, treated, participant, scenario, name="measure", unit="points") ->
         np.array(y, dtype=float),
         np.array(treated, dtype=bool),
         *(np.unique(each, return_inverse=True)[1] for each in (participant, scenario)),
+    )
+
+
+def column_of_fixture(path: Path, name: str) -> list[str]:
+    """A column of the synthetic trials, as text."""
+    with path.open(newline="") as file:
+        return [row[name] for row in csv.DictReader(file)]
+
+
+def stops_of_fixture(path: Path) -> Stops:
+    """How the synthetic trials ended."""
+    column = {
+        name: np.array(column_of_fixture(path, name))
+        for name in ("stop_time", "video_length", "correct", "condition", "participant", "video")
+    }
+    return stops(
+        stop_time_s=column["stop_time"].astype(float),
+        length_s=column["video_length"].astype(float),
+        correct=column["correct"].astype(float),
+        treated=column["condition"] == "polmdp",
+        participant=np.unique(column["participant"], return_inverse=True)[1],
+        scenario=np.unique(column["video"], return_inverse=True)[1],
     )
 
 

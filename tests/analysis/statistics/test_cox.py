@@ -1,7 +1,7 @@
 """The clustered Cox regression against R's numbers, statsmodels and its own symmetries."""
 
-import csv
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from statsmodels.duration.hazard_regression import PHReg
 
 from analysis.statistics.codes import NO_VARIATION, ONE_PARTICIPANT, SEPARATION
-from analysis.statistics.cox import clustered_cox
-from analysis.statistics.survival import CENSORED, CORRECT, WRONG, Stops, stops
-from tests.analysis.statistics.cases import holds
+from analysis.statistics.cox import clustered_cox, two_way_cox
+from analysis.statistics.survival import CENSORED, CORRECT, WRONG, Stops
+from tests.analysis.statistics.cases import defined, holds
+from tests.analysis.statistics.outcomes import stops_of_fixture
 
 TRIALS = st.lists(
     st.tuples(
@@ -28,7 +29,7 @@ def made(trials):
     """Stops from (time, ending, participant), after one correct stop of each of four."""
     trials = [*((1 + who % 3, CORRECT, who) for who in range(4)), *trials]
     time, ending, who = (np.array(column) for column in zip(*trials, strict=True))
-    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, 0)
+    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, (time + who) % 3, 0)
 
 
 def estimated(given):
@@ -42,28 +43,84 @@ def of_arms(treatment, reference):
     """Correct stops at these times, every trial of another participant."""
     time = np.array([*treatment, *reference], dtype=float)
     n = len(time)
-    return Stops(time, np.full(n, CORRECT, np.int8), np.arange(n) < len(treatment), np.arange(n), 0)
+    each = np.arange(n)
+    return Stops(time, np.full(n, CORRECT, np.int8), each < len(treatment), each, each % 4, 0)
 
 
 def test_golden_cox_of_the_synthetic_fixture(golden, paper_fixture):
     """R survival::coxph, Efron ties, cluster = participant."""
     case = golden("cox_fixture")
-    with paper_fixture.open() as file:
-        rows = list(csv.DictReader(file))
-    column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    test = clustered_cox(
-        stops(
-            stop_time_s=column["stop_time"].astype(float),
-            length_s=column["video_length"].astype(float),
-            correct=column["correct"].astype(float),
-            treated=column["condition"] == "polmdp",
-            participant=np.unique(column["participant"], return_inverse=True)[1],
-        )
-    )
+    test = clustered_cox(stops_of_fixture(paper_fixture))
     names = {"loghr": test.estimate, "robust_se": test.se, "naive_se": test.naive_se}
     holds(case, names | {"p": test.p})
     assert test.p == pytest.approx(case["expected"]["p"], rel=1e-3)
     assert (test.n, test.n_events, test.n_participants) == (1500, 1194, 150)
+
+
+R_TWO_WAY = """
+library(survival)
+d <- read.csv("paper_fixture.csv")
+d$event <- d$correct == 1 & d$stop_time < d$video_length
+fit <- coxph(Surv(stop_time, event) ~ I(condition == "polmdp"), d,
+             eps = 1e-14, toler.chol = 1e-15)
+h <- residuals(fit, type = "score") * vcov(fit)[1]
+by <- function(c) { s <- tapply(h, c, sum); length(s) / (length(s) - 1) * sum(s^2) }
+v <- c(by(d$participant), by(d$video), by(seq_along(h)))
+c(coef(fit), v, sqrt(max(v[1] + v[2] - v[3], v[1])))
+"""
+"""Its numbers in R 4.2.2, survival 3.5-3: log hazard ratio, variances, standard error."""
+
+
+def test_golden_two_way_cox_of_the_synthetic_fixture(paper_fixture):
+    """R survival::coxph's score residuals, two-way clustered by formula, `R_TWO_WAY`."""
+    test = defined(two_way_cox(stops_of_fixture(paper_fixture)))
+    found = (test.estimate, test.v_participant, test.v_scenario, test.v_trial, test.se)
+    expected = (
+        0.539103263187,
+        0.00543387045833,
+        0.00419273360239,
+        0.00373366751174,
+        0.0767654645591,
+    )
+    assert found == pytest.approx(expected, abs=1e-11)
+    assert (test.n_events, test.participants, test.scenarios, test.df) == (1194, 150, 37, 36)
+
+
+@given(TRIALS)
+def test_both_variances_are_of_one_estimate(trials):
+    given = made(trials)
+    one, other = clustered_cox(given), two_way_cox(given)
+    assert (one.estimate, one.hazard_ratio) == (other.estimate, other.hazard_ratio)
+    assert (one.n, one.n_events, one.n_participants) == (
+        other.n,
+        other.n_events,
+        other.participants,
+    )
+
+
+def test_with_scenarios_of_one_trial_each_it_is_the_error_by_participant():
+    """Participants' share in the two-way variance has P / (P - 1), R's cluster has not."""
+    given = of_arms(treatment=[1, 2, 5, 7, 8, 11], reference=[3, 4, 6, 9, 10, 12])
+    given = replace(given, participant=np.arange(12) // 2, scenario=np.arange(12))
+    expected = defined(clustered_cox(given)).se * math.sqrt(6 / 5)
+    assert defined(two_way_cox(given)).se == pytest.approx(expected)
+
+
+def test_scenarios_that_favour_an_arm_raise_the_two_way_error_only():
+    """Of 6 participants an arm every one sees 4 scenarios; two favour the treatment, two do not."""
+    participant, scenario = (each.ravel() for each in np.indices((12, 4)))
+    treated = participant < 6
+    time = 5.0 + participant % 6 / 10 + scenario / 50 - 3 * (treated == (scenario < 2))
+    given = Stops(time, np.full(48, CORRECT, np.int8), treated, participant, scenario, 0)
+    one, other = defined(clustered_cox(given)), defined(two_way_cox(given))
+    assert other.se > 2 * one.se
+
+
+def test_one_scenario_does_not_tell_how_scenarios_differ():
+    given = of_arms(treatment=[1, 4, 5], reference=[2, 3, 6])
+    test = two_way_cox(replace(given, scenario=np.zeros(6, dtype=np.int64)))
+    assert test.estimate is not None
+    assert (test.se, test.p, test.warnings) == (None, None, ("one_scenario",))
 
 
 @given(TRIALS)
@@ -81,7 +138,7 @@ def test_estimate_and_naive_error_are_those_of_statsmodels(trials):
 @given(TRIALS)
 def test_swapping_the_arms_changes_the_sign_and_nothing_else(trials):
     given = made(trials)
-    swapped = Stops(given.time_s, given.ending, ~given.treated, given.participant, 0)
+    swapped = replace(given, treated=~given.treated)
     one, other = estimated(given), estimated(swapped)
     assert (one.estimate, one.low) == pytest.approx((-other.estimate, -other.high), abs=1e-9)
     assert (one.se, one.p) == pytest.approx((other.se, other.p))
@@ -90,7 +147,7 @@ def test_swapping_the_arms_changes_the_sign_and_nothing_else(trials):
 @given(TRIALS)
 def test_only_the_order_of_times_matters(trials):
     given = made(trials)
-    later = Stops(given.time_s**3, given.ending, given.treated, given.participant, 0)
+    later = replace(given, time_s=given.time_s**3)
     assert clustered_cox(given) == clustered_cox(later)
 
 
@@ -125,7 +182,7 @@ def test_the_error_of_untied_single_trials_is_the_one_lifelines_gives():
 
 def test_trials_of_one_participant_count_together():
     apart = of_arms(treatment=[1, 2, 5, 7, 8, 11], reference=[3, 4, 6, 9, 10, 12])
-    together = Stops(apart.time_s, apart.ending, apart.treated, np.arange(12) // 2, 0)
+    together = replace(apart, participant=np.arange(12) // 2)
     one, other = clustered_cox(apart), clustered_cox(together)
     assert (one.estimate, one.naive_se) == (other.estimate, other.naive_se)
     assert one.se != pytest.approx(other.se)
@@ -135,7 +192,7 @@ def test_trials_of_one_participant_count_together():
 def test_an_arm_that_never_stops_correctly_has_no_ratio(silent):
     given = of_arms(treatment=[1, 2], reference=[3, 4])
     ending = np.where(given.treated == silent, WRONG, CORRECT)
-    test = clustered_cox(Stops(np.ones(4), ending, given.treated, given.participant, 2))
+    test = clustered_cox(replace(given, time_s=np.ones(4), ending=ending, n_missing=2))
     assert (test.estimate, test.se, test.p, test.low) == (None, None, None, None)
     assert test.warnings == (SEPARATION,)
     assert (test.n, test.n_missing, test.n_events) == (4, 2, 2)
@@ -143,8 +200,11 @@ def test_an_arm_that_never_stops_correctly_has_no_ratio(silent):
 
 def test_no_correct_stop_at_all_has_no_ratio():
     given = of_arms(treatment=[1, 2], reference=[3, 4])
-    nobody = Stops(given.time_s, np.full(4, CENSORED), given.treated, given.participant, 0)
+    nobody = replace(given, ending=np.full(4, CENSORED))
     assert clustered_cox(nobody).warnings == (SEPARATION,)
+    test = two_way_cox(nobody)
+    assert (test.estimate, test.hazard_ratio, test.warnings) == (None, None, (SEPARATION,))
+    assert (test.participants, test.scenarios) == (4, 4)
 
 
 def test_one_arm_done_before_the_other_begins_has_no_ratio():
@@ -153,9 +213,7 @@ def test_one_arm_done_before_the_other_begins_has_no_ratio():
 
 def test_one_participant_in_an_arm_leaves_the_error_open():
     given = of_arms(treatment=[1, 4], reference=[2, 3])
-    test = clustered_cox(
-        Stops(given.time_s, given.ending, given.treated, np.array([0, 0, 1, 2]), 0)
-    )
+    test = clustered_cox(replace(given, participant=np.array([0, 0, 1, 2])))
     assert test.estimate is not None
     assert (test.se, test.p, test.warnings) == (None, None, (ONE_PARTICIPANT,))
 

@@ -25,7 +25,7 @@ def crossed(seed, categories, participants=6, scenarios=4, trials=40):
     x = rng.integers(0, 2, trials) - 0.5
     category, participant, scenario = deal
     cells = np.unique(2 * scenario + (x > 0), return_inverse=True)[1]
-    return category, x, (participant, scenario, cells)
+    return category, np.stack([x, rng.normal(size=trials)], axis=1), (participant, scenario, cells)
 
 
 @given(SEEDS)
@@ -56,22 +56,22 @@ def test_the_gradient_is_that_of_differences(categories, seed):
     cuts = categories - 1
 
     def value(at):
-        return likelihood(at[:cuts], at[cuts], at[cuts + 1 :]).value
+        return likelihood(at[:cuts], at[cuts : cuts + 2], at[cuts + 2 :]).value
 
-    at = np.concatenate([THRESHOLDS[categories], [0.7, 0.9, 0.0, 0.4]])
-    found = likelihood(at[:cuts], at[cuts], at[cuts + 1 :])
+    at = np.concatenate([THRESHOLDS[categories], [0.7, -0.2, 0.9, 0.0, 0.4]])
+    found = likelihood(at[:cuts], at[cuts : cuts + 2], at[cuts + 2 :])
     steps = 1e-5 * np.eye(len(at))
     expected = [(value(at + h) - value(at - h)) / 2e-5 for h in steps]
-    gradient = [*found.thresholds, found.slope, *found.sds]
+    gradient = [*found.thresholds, *found.slopes, *found.sds]
     assert gradient == pytest.approx(expected, abs=1e-5)
 
 
 def test_without_random_effects_it_is_the_likelihood_of_independent_trials():
     category, x, factors = crossed(1, 4)
-    thresholds = THRESHOLDS[4]
-    below = expit(np.concatenate([[-np.inf], thresholds, [np.inf]])[:, None] - 0.7 * x)
+    thresholds, slopes = THRESHOLDS[4], np.array([0.7, -0.2])
+    below = expit(np.concatenate([[-np.inf], thresholds, [np.inf]])[:, None] - x @ slopes)
     shares = np.diff(below, axis=0)[category, np.arange(len(x))]
-    found = CrossedLikelihood(category, x, factors)(thresholds, 0.7, np.zeros(3))
+    found = CrossedLikelihood(category, x, factors)(thresholds, slopes, np.zeros(3))
     assert found.value == pytest.approx(np.log(shares).sum(), abs=1e-12)
 
 
@@ -83,7 +83,9 @@ def test_it_comes_close_to_the_integral_over_four_crossed_effects(repeats, error
     category = np.concatenate([np.arange(repeats) < each for each in correct]).astype(np.int64)
     factors = list(np.repeat(pairs, repeats, axis=0).T)
     sds = np.array([0.8, 0.6])
-    laplace = CrossedLikelihood(category, np.zeros(4 * repeats), factors)(np.array([0.2]), 0.0, sds)
+    nothing = np.zeros((4 * repeats, 1))
+    likelihood = CrossedLikelihood(category, nothing, factors)
+    laplace = likelihood(np.array([0.2]), np.zeros(1), sds)
     nodes, weights = np.polynomial.hermite_e.hermegauss(27)
     effects = np.array(np.meshgrid(*[nodes] * 4)).reshape(2, 2, -1)
     masses = np.array(np.meshgrid(*[weights / weights.sum()] * 4)).reshape(4, -1)
@@ -99,8 +101,8 @@ def test_it_is_closer_the_more_trials_an_effect_has(trials, error):
     """One participant, so the likelihood is one integral; the error falls as 1 / trials."""
     category = (np.arange(trials) % 10 < 8).astype(np.int64)
     nobody = np.zeros(trials, dtype=np.int64)
-    found = CrossedLikelihood(category, np.zeros(trials), [nobody, nobody])(
-        np.array([0.0]), 0.0, np.array([1.5, 0.0])
+    found = CrossedLikelihood(category, np.zeros((trials, 1)), [nobody, nobody])(
+        np.array([0.0]), np.zeros(1), np.array([1.5, 0.0])
     )
     correct = category.sum()
 

@@ -1,5 +1,7 @@
 """Cumulative incidence against closed forms, statsmodels and its own definition, slowly."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +10,7 @@ from statsmodels.duration.survfunc import CumIncidenceRight
 
 from analysis.errors import EmptyArmError
 from analysis.statistics.codes import ONE_PARTICIPANT
+from analysis.statistics.outcome import UNKNOWN
 from analysis.statistics.survival import (
     CENSORED,
     CORRECT,
@@ -33,7 +36,7 @@ def made(trials):
     """Stops of both arms from (time, ending, participant), two more trials in each arm."""
     trials = [*trials, *((9, CORRECT, who) for who in range(4))]
     time, ending, who = (np.array(column) for column in zip(*trials, strict=True))
-    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, 0)
+    return Stops(time.astype(float), ending.astype(np.int8), who % 2 == 0, who, who, 0)
 
 
 def many(seed, n=600):
@@ -41,7 +44,7 @@ def many(seed, n=600):
     rng = np.random.default_rng(seed)
     time, who = rng.random(n), np.arange(n) // 10
     ending = np.where(time > 0.9, CENSORED, rng.integers(0, 3, n)).astype(np.int8)
-    return Stops(time, ending, who % 2 == 0, who, 0)
+    return Stops(time, ending, who % 2 == 0, who, who, 0)
 
 
 def some(given, which):
@@ -51,6 +54,7 @@ def some(given, which):
         given.ending[which],
         given.treated[which],
         given.participant[which],
+        given.scenario[which],
         given.n_missing,
     )
 
@@ -78,9 +82,11 @@ def test_a_stop_at_the_length_is_no_stop():
         correct=np.array([1.0, 0.0, 1.0, 0.0]),
         treated=np.array([True, False, True, False]),
         participant=np.array([4, 7, 4, 7]),
+        scenario=np.array([5, UNKNOWN, 5, 2]),
     )
     assert found.ending.tolist() == [CORRECT, WRONG, CENSORED, CENSORED]
     assert found.participant.tolist() == [0, 1, 0, 1]
+    assert found.scenario.tolist() == [1, UNKNOWN, 1, 0]
     assert found.n_missing == 0
 
 
@@ -92,6 +98,7 @@ def test_trials_that_lack_time_length_or_guess_are_left_out_and_counted():
         correct=np.array([1.0, 1.0, 1.0, nan, 0.0]),
         treated=np.array([True, True, True, False, False]),
         participant=np.arange(5),
+        scenario=np.arange(5),
     )
     assert found.time_s.tolist() == [1.0, 2.0]
     assert found.n_missing == 3
@@ -100,7 +107,7 @@ def test_trials_that_lack_time_length_or_guess_are_left_out_and_counted():
 def test_an_arm_without_trials_is_an_error():
     one = np.array([1.0])
     with pytest.raises(EmptyArmError, match="condition reference"):
-        stops(one, 9 * one, one, np.array([True]), np.array([0]))
+        stops(one, 9 * one, one, np.array([True]), np.array([0]), np.array([0]))
 
 
 @pytest.mark.parametrize("cause", [CORRECT, WRONG])
@@ -144,7 +151,7 @@ def test_the_curves_follow_their_definition_and_so_does_their_error(trials):
 def test_where_nothing_is_censored_it_is_the_clustered_error_of_a_share():
     given = many(2)
     ending = np.where(given.ending == CENSORED, WRONG, given.ending)
-    given = Stops(given.time_s, ending, given.treated, given.participant, 0)
+    given = replace(given, ending=ending)
     found = estimated(given)
     stopped = (given.time_s <= found.time_s[:, None]) & (ending == CORRECT)
     stopped = stopped[:, given.treated]
@@ -232,7 +239,7 @@ def test_one_participant_has_curves_but_no_intervals():
 
 def test_all_ending_at_once_ends_the_curve_there():
     who = np.arange(8)
-    given = Stops(np.full(8, 2.0), np.full(8, CORRECT, np.int8), who < 4, who, 0)
+    given = Stops(np.full(8, 2.0), np.full(8, CORRECT, np.int8), who < 4, who, who, 0)
     found = estimated(given)
     assert found.time_s.tolist() == [0, 2]
     assert found.treatment.correct.share.tolist() == [0, 1]
