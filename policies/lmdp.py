@@ -180,12 +180,15 @@ def play_lmdp(
 
     The time limit covers solving and searching, not the compiling of the search on first use;
     the same seed gives the same play wherever the limit is not reached.
-    ModelError for a start outside the maze, MazeError for an unknown goal.
+    ModelError for a start outside the maze or in a closed room, MazeError for an unknown goal.
     """
     n = maze.goal_index(goal)
     if not 0 <= start < maze.states:
         raise ModelError(f"expected a start from 0 to {maze.states - 1}, came {start}")
-    allowed = steps_allowed(float(distances(maze)[n, start]))
+    distance = float(distances(maze)[n, start])
+    if distance < 0:
+        raise ModelError(f"expected a start with a way to the goals, came {start}")
+    allowed = steps_allowed(distance)
     searching = TreeSearch(maze, goal, search)
     world, tree = searching.world, searching.tree
     began = perf_counter()

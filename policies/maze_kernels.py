@@ -46,6 +46,7 @@ def gather(after: Integers, d: Integers, table: Array, into: Array) -> None:
     """Fill `into[n, x, a]` from `table[n, k, m]`: distance k; m = 0, 1, 2: nearer, equal, farther.
 
     A move changes the distance by at most 1, so an action has one of three values per distance.
+    Where no way leads (k = -1) it is an entry of the last distance, finite as all are.
     """
     N, S, A = into.shape
     for n in range(N):

@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from policies.errors import ModelError
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import Array
-from policies.solvers import cells_after, distances, gathered, value_tables
+from policies.priors import normalised
+from policies.solvers import (
+    cells_after,
+    distances,
+    gathered,
+    nothing_in_closed_rooms,
+    value_tables,
+)
 
 Variant = Literal["as_printed", "proper_posterior", "advantage"]
 
@@ -44,23 +51,36 @@ class MazeSolution:
 
 
 def maze_rewards(
-    maze: Maze, gamma: float, actions: Sequence[Action], beta: float, variant: Variant
+    maze: Maze,
+    gamma: float,
+    actions: Sequence[Action],
+    beta: float,
+    variant: Variant,
+    prior: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Q*_n and r_leg of a maze, `q[n, x, a]` and `r_leg[n, x, a]` (paper eqs. 5-6, uniform prior).
+    """Q*_n and r_leg of a maze, `q[n, x, a]` and `r_leg[n, x, a]` (paper eqs. 5-6).
 
-    The same as `goal_values` and `legible_rewards`, from one table per distance.
+    The same as `goal_values` and `legible_rewards`, from one table per distance; 0 in closed
+    rooms. `prior[n]`: uniform if None.
     """
     from policies import maze_kernels as kernels
 
     d, after = distances(maze), cells_after(maze, actions)
     v, q = value_tables(maze, d, gamma, actions)
     log_w = beta * (q - (q.max() if variant == "as_printed" else v[:, :, None]))
-    in_log_space = log_w.min() < -LARGEST_EXPONENT or log_w.max() > LARGEST_EXPONENT
+    lowest, log_prior = log_w.min(), None
+    if prior is not None:
+        log_prior = np.log(normalised(prior, len(d)))[:, None, None]
+        lowest += log_prior.min()
+    in_log_space = lowest < -LARGEST_EXPONENT or log_w.max() > LARGEST_EXPONENT
     r_leg = gathered(after, d, log_w if in_log_space else np.exp(log_w))
     if variant == "proper_posterior":
         (kernels.log_over_actions if in_log_space else kernels.over_actions)(r_leg)
+    if log_prior is not None:
+        r_leg = r_leg + log_prior if in_log_space else r_leg * np.exp(log_prior)
     (kernels.exp_over_goals if in_log_space else kernels.over_goals)(r_leg)
-    return gathered(after, d, q), r_leg
+    q = gathered(after, d, q)
+    return nothing_in_closed_rooms(q, d), nothing_in_closed_rooms(r_leg, d)
 
 
 def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) -> MazeSolution:
@@ -100,8 +120,8 @@ def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) ->
 def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) -> Array:
     """Least expected undiscounted `cost[x, a]` >= 0 until the goal is entered, shape (S,).
 
-    Folding a failed action's self-loop leaves a graph with edges cost / .85, where taking up
-    cells best first is Dijkstra's algorithm.
+    0 in closed rooms. Folding a failed action's self-loop leaves a graph with edges cost / .85,
+    where taking up cells best first is Dijkstra's algorithm.
     """
     from policies import maze_kernels as kernels
 
@@ -109,7 +129,7 @@ def least_cost(maze: Maze, goal: int, cost: Array, actions: Sequence[Action]) ->
     v = np.full(maze.states, -np.inf)
     v[goal] = 0
     kernels.best_first(_steps(maze), c, 0.0, v, np.array([goal]), maze.states)
-    least: Array = np.abs(v)
+    least: Array = np.where(v > -np.inf, np.abs(v), 0)
     return least
 
 

@@ -70,21 +70,24 @@ def ties(q: Array) -> NDArray[np.bool_]:
 
 
 def distances(maze: Maze) -> NDArray[np.int32]:
-    """Fewest moves from every state to every goal, shape (N, S); MazeError where no way leads."""
-    return np.stack([distances_to(maze, goal) for goal in maze.goals.values()])
+    """Fewest moves from every state to every goal, shape (N, S); -1 in closed rooms.
+
+    MazeError where no way leads from one goal to another.
+    """
+    d = np.stack([distances_to(maze, goal) for goal in maze.goals.values()])
+    between = d[:, list(maze.goals.values())]
+    if between.min() < 0:
+        one, other = (maze.letters[n] for n in np.argwhere(between < 0)[0])
+        raise MazeError(f"expected a way from goal {other} to {one}, found none")
+    return d
 
 
 def distances_to(maze: Maze, goal: int) -> NDArray[np.int32]:
-    """Fewest moves from every state to one, shape (S,); MazeError where no way leads."""
+    """Fewest moves from every state to one, shape (S,); -1 where no way leads."""
     from policies.maze_kernels import breadth_first
 
     d = np.empty(maze.states, np.int32)
-    if breadth_first(maze.successors, goal, d) < maze.states:
-        found = maze.cell(int(d.argmin()))
-        raise MazeError(
-            f"expected cell {maze.cell(goal)} to be reachable from every cell, "
-            f"found no way from {found} (row, column)"
-        )
+    breadth_first(maze.successors, goal, d)
     return d
 
 
@@ -93,10 +96,12 @@ def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
 
     The only chance in a maze is the self-loop of a failed action, so with d the distance to the
     goal and kappa = .85 gamma / (1 - .15 gamma), V_n(x) = kappa^d V_n(goal); V_n(goal) is
-    1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into).
+    1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into). In closed
+    rooms all is 0.
     """
     d = distances(maze)
-    return gathered(cells_after(maze, actions), d, value_tables(maze, d, gamma, actions)[1])
+    q = gathered(cells_after(maze, actions), d, value_tables(maze, d, gamma, actions)[1])
+    return nothing_in_closed_rooms(q, d)
 
 
 def value_tables(
@@ -129,6 +134,14 @@ def gathered(after: NDArray[np.int64], d: NDArray[np.int32], table: Array) -> Ar
     return into
 
 
+def nothing_in_closed_rooms(values: Array, d: NDArray[np.int32]) -> Array:
+    """Write 0 into `values[n, x, a]`, in place, where no way leads to the goals (d = -1)."""
+    closed = d[0] < 0
+    if closed.any():
+        values[:, closed] = 0
+    return values
+
+
 def cells_after(maze: Maze, actions: Sequence[Action]) -> NDArray[np.int64]:
     """The cell each of the actions leads to when it does not fail, shape (S, A)."""
     return np.ascontiguousarray(maze.successors[:, list(actions)])
@@ -137,8 +150,8 @@ def cells_after(maze: Maze, actions: Sequence[Action]) -> NDArray[np.int64]:
 def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Array:
     """The optimal policy of one goal, (S, A): actions that lower the distance; at the goal, stay.
 
-    Read off the distances, never off Q: far from the goal the Q values of all actions are equal
-    to machine precision.
+    Where no way leads to the goal all actions are as good. Read off the distances, never off Q:
+    far from the goal the Q values of all actions are equal to machine precision.
     """
     d = distances_to(maze, goal)
     after = cells_after(maze, actions)
