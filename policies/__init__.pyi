@@ -36,8 +36,8 @@ from .maze import Maze as Maze
 from .maze import format_maze as format_maze
 from .maze import parse_maze as parse_maze
 from .maze import random_maze as random_maze
-from .maze import read_maze as read_maze
-from .maze import read_mazes as read_mazes
+from .maze_files import read_maze as read_maze
+from .maze_files import read_mazes as read_mazes
 from .maze_solver import MazeSolution as MazeSolution
 from .maze_solver import maze_rewards as maze_rewards
 from .maze_solver import solve_maze as solve_maze
@@ -65,6 +65,7 @@ from .pool import Stimulus as Stimulus
 from .pool import content_hash as content_hash
 from .pool import load_pool as load_pool
 from .pool import parse_pool as parse_pool
+from .priors import goal_prior as goal_prior
 from .rollout import Rollout as Rollout
 from .rollout import draw_rollout as draw_rollout
 from .scenes import scene_maze as scene_maze

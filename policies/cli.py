@@ -50,6 +50,14 @@ def solve(
     actions: Annotated[
         str, typer.Option(metavar="udlr|udlrn", help="Four moves, or with standing still.")
     ] = "udlrn",
+    prior: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A=.5,B=.3,...",
+            help="What the observer believes of every goal beforehand: weights, divided by their "
+            "sum. Uniform if left out.",
+        ),
+    ] = None,
     guard: Annotated[
         bool, typer.Option("--guard", help="Shortest-path actions where it would not arrive.")
     ] = False,
@@ -63,8 +71,10 @@ def solve(
     """
     with one_clear_line():
         from policies.drawing import LEGEND, describe, draw_plan, in_encoding
-        from policies.maze import ACTION_SETS, read_maze
+        from policies.maze import ACTION_SETS
+        from policies.maze_files import read_maze
         from policies.polmdp import Parameters, plan_legible
+        from policies.priors import goal_prior, parse_weights
 
         given: dict[str, Any] = {
             "formulation": formulation,
@@ -73,7 +83,9 @@ def solve(
             "guard": guard,
         }
         parameters = Parameters(beta, gamma, **given)
-        plan = plan_legible(read_maze(maze), goal, parameters)
+        world = read_maze(maze)
+        believed = goal_prior(world, parse_weights(prior)) if prior is not None else None
+        plan = plan_legible(world, goal, parameters, believed)
         if json_file:
             write_whole({json_file: json.dumps(_as_json(plan)) + "\n"})
         columns = shutil.get_terminal_size().columns
@@ -168,14 +180,16 @@ def sheet(
 
 
 def _as_json(plan: "LegiblePlan") -> dict[str, Any]:
-    """The arrays of a plan: q and r_leg by goal, state, action; the others by state first."""
+    """The arrays of a plan: prior by goal; q and r_leg by goal, state, action; others by state."""
     return {
         "goals": list(plan.maze.letters),
+        "prior": plan.prior.tolist(),
         "q": plan.q.tolist(),
         "r_leg": plan.r_leg.tolist(),
         "v_legible": plan.v_legible.tolist(),
         "policy_optimal": plan.policy_optimal.tolist(),
         "policy_legible": plan.policy_legible.tolist(),
+        "reaches_goal": plan.certificate.reaches_goal.tolist(),
         "arrives": plan.certificate.arrives.tolist(),
         "stretch": [s if math.isfinite(s) else None for s in plan.certificate.stretch.tolist()],
     }

@@ -3,13 +3,13 @@
 import re
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import typer
 
-from policies.errors import PolicyError
+from policies.errors import MazeError, PolicyError
 
 
 def run_commands(commands: typer.Typer, name: str, refusals: tuple[type[Exception], ...]) -> None:
@@ -18,21 +18,29 @@ def run_commands(commands: typer.Typer, name: str, refusals: tuple[type[Exceptio
     try:
         sys.exit(commands(prog_name=name, standalone_mode=False))
     except typer.TyperException as wrong_use:
-        line = _wrong_use(wrong_use)
+        lines = [_wrong_use(wrong_use)]
     except expected as error:
-        line = one_line(error)
-    if line:
-        typer.echo(f"goalguess: {line}", err=True)
+        lines = clear_lines(error)
+    _show(filter(None, lines))
     sys.exit(2)
 
 
-def one_line(error: Exception) -> str:
-    """What an error says, in one line: the system's ones as `file: reason`, without its codes."""
+def clear_lines(error: Exception) -> list[str]:
+    """What an error says, in one line: the system's ones as `file: reason`, without its codes.
+
+    Only of mazes there can be several: each file's faults have a line of their own.
+    """
     text = str(error)
     if isinstance(error, OSError) and error.strerror:
         file = error.filename2 or error.filename
         text = f"{file}: {error.strerror}" if file else error.strerror
-    return " ".join(re.sub(r"\[Errno -?\d+\] ", "", text).split())
+    texts = text.splitlines() if isinstance(error, MazeError) else [text]
+    return [" ".join(re.sub(r"\[Errno -?\d+\] ", "", line).split()) for line in texts]
+
+
+def _show(lines: Iterable[str]) -> None:
+    for line in lines:
+        typer.echo(f"goalguess: {line}", err=True)
 
 
 def _wrong_use(error: typer.TyperException) -> str:
@@ -46,13 +54,13 @@ def _wrong_use(error: typer.TyperException) -> str:
 
 @contextmanager
 def one_clear_line() -> Iterator[None]:
-    """Turn what the caller can mend into one line on stderr and exit code 2."""
+    """Turn what the caller can mend into one line on stderr, or one a bad maze; exit code 2."""
     try:
         yield
     except BrokenPipeError:  # the reader of our output has left; typer ends quietly
         raise
     except (PolicyError, OSError) as error:
-        typer.echo(f"goalguess: {one_line(error)}", err=True)
+        _show(clear_lines(error))
         raise typer.Exit(2) from error
 
 

@@ -39,12 +39,15 @@ def draw_cells(maze: Maze, content: Mapping[int, str], width: int) -> list[str]:
 
 
 def draw_policy(maze: Maze, policy: Array, actions: Sequence[Action]) -> list[str]:
-    """The lines of an arrow map: every action that the policy can take, per cell, (S, A)."""
-    letters = {state: letter for letter, state in maze.goals.items()}
+    """The lines of an arrow map: every action that the policy can take, per cell, (S, A).
+
+    Closed rooms stay blank.
+    """
     content = {
-        x: letters.get(x) or arrows({actions[int(a)] for a in np.flatnonzero(policy[x])})
-        for x in range(maze.states)
+        int(x): arrows({actions[int(a)] for a in np.flatnonzero(policy[x])})
+        for x in maze.free_cells
     }
+    content |= {state: letter for letter, state in maze.goals.items()}
     return draw_cells(maze, content, width=2)
 
 
@@ -73,9 +76,9 @@ def draw_plan(plan: LegiblePlan, actions: Sequence[Action], columns: int) -> str
 
 
 def describe(plan: LegiblePlan) -> list[str]:
-    """Expected steps and the certificate, in sentences."""
+    """The prior unless uniform, expected steps and the certificate, in sentences."""
     maze, certificate = plan.maze, plan.certificate
-    away = np.arange(maze.states) != maze.goals[plan.goal]
+    away = certificate.reaches_goal & (np.arange(maze.states) != maze.goals[plan.goal])
     if not away.any():
         return ["no start but the goal itself"]
     fewest = distances(maze)[maze.goal_index(plan.goal)] / (1 - FAILURE)
@@ -85,19 +88,27 @@ def describe(plan: LegiblePlan) -> list[str]:
         for name, steps in (("optimal", fewest), ("legible", certificate.expected_steps))
     ]
     lines = [f"expected steps, mean of the {arrive.sum()} starts that arrive: {', '.join(means)}"]
+    if np.ptp(plan.prior):
+        believed = zip(maze.letters, plan.prior, strict=True)
+        lines.insert(0, "prior: " + ", ".join(f"{letter} {p:.3g}" for letter, p in believed))
+    closed = int((~certificate.reaches_goal).sum())
     if certificate.certified:
+        starts = "every start that reaches the goal" if closed else "every start"
         lines.append(
-            "certified: arrives from every start, with at most "
-            f"{certificate.stretch.max():.2f} times the steps of the optimal policy"
+            f"certified: arrives from {starts}, with at most "
+            f"{certificate.stretch[away].max():.2f} times the steps of the optimal policy"
         )
     else:
-        fails = np.flatnonzero(~certificate.holds_at)
+        fails = np.flatnonzero(certificate.fails_at)
         i, j = maze.cell(int(fails[0]))
         lines.append(
             f"not certified: from {len(fails)} of {away.sum()} starts, row {i + 1} column {j + 1} "
             f"the first, it does not arrive or takes over {LARGEST_STRETCH:g} times as long; "
             "--guard repairs that"
         )
+    if closed:
+        cells = "1 cell reaches" if closed == 1 else f"{closed} cells reach"
+        lines.append(f"{cells} no goal (blank above): no start, and all values there are 0")
     return lines
 
 

@@ -13,7 +13,10 @@ class PolicyError(Exception):
 
 
 class MazeError(PolicyError):
-    """A maze text that breaks the format; the message begins with source:line:column."""
+    """A maze text that breaks the format; the message begins with source:line:column.
+
+    Of a folder's mazes the message has a line for each bad file.
+    """
 
 
 class ModelError(PolicyError):

@@ -151,17 +151,19 @@ def play_lmdp(
     `most_moves` is 4 x distance / .85 if not said, for a Bandit 502. The time limit covers
     solving and searching, not the compiling of the search on first use; the same seed gives the
     same play wherever the limit is not reached.
-    ModelError for a start outside the maze, MazeError for an unknown goal.
+    ModelError for a start outside the maze or in a closed room, MazeError for an unknown goal.
     """
     n = maze.goal_index(goal)
     if not 0 <= start < maze.states:
         raise ModelError(f"expected a start from 0 to {maze.states - 1}, came {start}")
+    distance = float(distances(maze)[n, start])
+    if distance < 0:
+        raise ModelError(f"expected a start with a way to the goals, came {start}")
     searching: TreeSearch | BanditSearch
     if isinstance(search, Bandit):
         searching, allowed = BanditSearch(maze, goal, search), MOST_MOVES
     else:
-        searching = TreeSearch(maze, goal, search)
-        allowed = steps_allowed(float(distances(maze)[n, start]))
+        searching, allowed = TreeSearch(maze, goal, search), steps_allowed(distance)
     allowed = most_moves or allowed
     world = searching.world
     began = perf_counter()

@@ -1,11 +1,10 @@
 """The maze world: a grid of cells, walls on the edges between them, lettered goals."""
 
 import string
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -78,6 +77,29 @@ class Maze:
         return after.reshape(self.states, len(Action))
 
     @cached_property
+    def rooms(self) -> NDArray[np.int32]:
+        """The number of the room a cell is in, (S,): ways lead between the cells of a room."""
+        rooms: NDArray[np.int32] = connected_components(self.edges, directed=False)[1]
+        return rooms
+
+    @cached_property
+    def reaches_goal(self) -> NDArray[np.bool_]:
+        """Whether a way leads from a cell to the goals, (S,).
+
+        The other cells are closed rooms, and no states of any experiment: no start is drawn
+        there, all values there are 0.
+        """
+        reaches: NDArray[np.bool_] = self.rooms == self.rooms[next(iter(self.goals.values()))]
+        return reaches
+
+    @cached_property
+    def free_cells(self) -> NDArray[np.int64]:
+        """The cells that hold no goal and have a way to the goals, in order."""
+        free = self.reaches_goal.copy()
+        free[list(self.goals.values())] = False
+        return np.flatnonzero(free)
+
+    @cached_property
     def edges(self) -> coo_array:
         """The graph of neighbouring cells without a wall between, shape (S, S), weight 1."""
         x, a = np.nonzero(self.successors != np.arange(self.states)[:, None])
@@ -96,29 +118,17 @@ class Maze:
         return self.letters.index(letter)
 
 
-def read_maze(path: Path) -> Maze:
-    """Read a maze file; MazeError names file, line and column."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise MazeError(f"{path}: expected a readable file: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise MazeError(f"{path}: expected text in UTF-8: {error}") from error
-    return parse_maze(text, source=str(path))
-
-
-def read_mazes(folder: Path) -> dict[str, Maze]:
-    """The mazes of a folder's `.txt` files, by file name without the ending, in order of names."""
-    mazes = {path.stem: read_maze(path) for path in sorted(folder.glob("*.txt"))}
-    if not mazes:
-        raise MazeError(f"{folder}: expected a folder with maze files (.txt), found none")
-    return mazes
-
-
 def parse_maze(text: str, source: str = "maze") -> Maze:
-    """Parse the text format of README's "maze files"; MazeError says source:line:column."""
-    lines = text.splitlines()
-    _check_shape(lines, source)
+    """Parse the text format of README's "maze files"; MazeError says source:line:column.
+
+    Blank lines around the maze and blanks at the ends of lines (tabs too) do not matter.
+    """
+    lines, skipped = _trimmed(text)
+
+    def at(line: int, column: int) -> str:
+        return f"{source}:{skipped + line + 1}:{column + 1}"
+
+    _check_shape(lines, at)
     rows, cols = len(lines) // 2, len(lines[0]) // 4
     goals: dict[str, int] = {}
     wall_right = np.zeros((rows, cols - 1), bool)
@@ -127,14 +137,14 @@ def parse_maze(text: str, source: str = "maze") -> Maze:
         found = lines[line][column : column + len(expected[0])]
         if expected == _CELL:
             if found not in _CELL:
-                raise _unexpected(source, line, column, "a cell: '.' or a capital letter", found)
+                raise _unexpected(at(line, column), "a cell: '.' or a capital letter", found)
             if found in goals:
-                raise _unexpected(source, line, column, "a letter not used before", found)
+                raise _unexpected(at(line, column), "a letter not used before", found)
             if found != ".":
                 goals[found] = line // 2 * cols + column // 4
         elif found not in expected:
             wanted = " or ".join(repr(sign) for sign in expected)
-            raise _unexpected(source, line, column, wanted, found)
+            raise _unexpected(at(line, column), wanted, found)
         elif expected == _BESIDE:
             wall_right[line // 2, column // 4 - 1] = found == "|"
         elif expected == _BELOW:
@@ -142,7 +152,7 @@ def parse_maze(text: str, source: str = "maze") -> Maze:
     if not goals:
         raise MazeError(f"{source}: expected at least one goal (a capital letter), found none")
     maze = Maze(rows, cols, dict(sorted(goals.items())), wall_right, wall_below)
-    _check_reachable(maze, source)
+    _check_goals(maze, at)
     return maze
 
 
@@ -202,6 +212,9 @@ _CELL = tuple("." + string.ascii_uppercase)
 _CORNER, _BLANK, _POST, _LID = ("+",), (" ",), ("|",), ("---",)
 _BESIDE, _BELOW = ("|", " "), ("---", "   ")
 
+_Place = Callable[[int, int], str]
+"""From line and column of a maze's text, 0-based, to source:line:column."""
+
 
 def _slots(rows: int, cols: int) -> Iterator[tuple[int, int, tuple[str, ...]]]:
     """Every place of the text, in reading order: line, column (0-based), what may stand there."""
@@ -219,42 +232,50 @@ def _slots(rows: int, cols: int) -> Iterator[tuple[int, int, tuple[str, ...]]]:
         yield line, 4 * cols, _CORNER if wall_line else _POST
 
 
-def _check_shape(lines: list[str], source: str) -> None:
+def _trimmed(text: str) -> tuple[list[str], int]:
+    """The lines of a maze without blanks around them, and how many blank lines stand before it."""
+    lines = text.splitlines()
+    filled = [number for number, line in enumerate(lines) if line.strip()] or [0, -1]
+    kept = lines[filled[0] : filled[-1] + 1]
+    width = len(kept[0].rstrip()) if kept else 0
+    return [line[:width] + line[width:].rstrip() for line in kept], filled[0]
+
+
+def _check_shape(lines: list[str], at: _Place) -> None:
     if len(lines) < 3 or len(lines) % 2 == 0:
         raise MazeError(
-            f"{source}:{len(lines) + 1}:1: expected an odd number of lines, 3 or more, "
+            f"{at(len(lines), 0)}: expected an odd number of lines, 3 or more, "
             f"ending with the border, found {len(lines)} lines"
         )
     width = len(lines[0])
     if width < 5 or width % 4 != 1:
         raise MazeError(
-            f"{source}:1:{width + 1}: expected a border of '+---' repeated and a last '+', "
+            f"{at(0, width)}: expected a border of '+---' repeated and a last '+', "
             f"found {width} characters"
         )
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(lines):
         if len(line) != width:
-            column = min(len(line), width) + 1
             raise MazeError(
-                f"{source}:{number}:{column}: expected {width} characters as in line 1, "
-                f"found {len(line)}"
+                f"{at(number, min(len(line), width))}: expected {width} characters as in the "
+                f"first line, found {len(line)}"
             )
 
 
-def _check_reachable(maze: Maze, source: str) -> None:
-    _, component = connected_components(maze.edges, directed=False)
+def _check_goals(maze: Maze, at: _Place) -> None:
+    """Refuse a goal that no start could reach, and goals that no start could reach all of."""
+    cells = np.bincount(maze.rooms)
+    first = maze.letters[0]
     for letter, goal in maze.goals.items():
-        cut_off = np.flatnonzero(component != component[goal])
-        if len(cut_off):
-            line, column = (2 * maze.cell(goal)[0] + 2, 4 * maze.cell(goal)[1] + 3)
-            i, j = maze.cell(int(cut_off[0]))
-            raise MazeError(
-                f"{source}:{line}:{column}: expected goal {letter} to be reachable from every "
-                f"cell, found no way from the cell at {2 * i + 2}:{4 * j + 3}"
-            )
+        i, j = maze.cell(goal)
+        where = at(2 * i + 1, 4 * j + 2)
+        if cells[maze.rooms[goal]] == 1 < maze.states:
+            raise MazeError(f"{where}: expected a way to goal {letter}, found walls all around it")
+        if not maze.reaches_goal[goal]:
+            raise MazeError(f"{where}: expected a way from goal {letter} to {first}, found none")
 
 
-def _unexpected(source: str, line: int, column: int, expected: str, found: str) -> MazeError:
-    return MazeError(f"{source}:{line + 1}:{column + 1}: expected {expected}, found {found!r}")
+def _unexpected(where: str, expected: str, found: str) -> MazeError:
+    return MazeError(f"{where}: expected {expected}, found {found!r}")
 
 
 def _spanning_tree(

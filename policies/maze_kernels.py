@@ -1,7 +1,7 @@
 """Compiled loops for distances in a maze and what follows from them: Q* and legible rewards.
 
-`after[x, a]` is the cell that action a leads to when it does not fail; `moves[x, a]` has of them the
-four moves. Cells and places in tables are unsigned where they index: numba then leaves out the
+`after[x, a]` is the cell that action a leads to when it does not fail; `moves[x, a]` has of them
+the four moves. Cells and places in tables are unsigned where they index: numba then leaves out the
 question whether an index counts from the end, which would take a third of the time.
 """
 
@@ -108,6 +108,7 @@ def gather(moves: Integers, d: Integers, s: Integers, table: Array, into: Array)
     """Fill `into[n, x, a]` from `table[s[n], place(k, l)]`, k and l the distances before and after.
 
     A move changes the distance by at most 1, so an action has one of three values per distance.
+    Where no way leads (k = -1) it is an entry of the last distance, finite as all are.
     """
     N, S, A = into.shape
     for n in range(N):
@@ -177,6 +178,14 @@ def exp_over_goals(w: Array) -> None:
 
 
 @njit(cache=True, nogil=True)
+def nothing_in_closed_rooms(d: Integers, w: Array) -> None:
+    """Write 0 into `w[n, x, a]` where no way leads to the goals, in place."""
+    for x in range(w.shape[1]):
+        if d[0, x] < 0:
+            w[:, x] = 0
+
+
+@njit(cache=True, nogil=True)
 def fill_goal_values(
     after: Integers, goals: Integers, gamma: float, failure: float, q: Array
 ) -> int:
@@ -197,13 +206,15 @@ def fill_rewards(
     beta: float,
     less_v: bool,
     by_action: bool,
+    log_prior: Array,
     q_and_r: Array,
 ) -> int:
     """Write Q*_n and the posterior of goal n into `q_and_r`, each [n, x, a].
 
     Goals weigh exp(beta Q_n), or exp(beta (Q_n - V_n)) if `less_v`; `by_action` first divides
-    each goal's weights by their sum over actions. Returns the least number of cells that reach
-    a goal.
+    each goal's weights by their sum over actions; then goals weigh by their prior, (N,), whose
+    logarithms count from those of the first. Cells that reach no goal have 0. Returns the least
+    number of cells that reach a goal.
     """
     q, r_leg = q_and_r[0], q_and_r[1]
     moves, d = moves_only(after), np.empty(q.shape[:2], np.int32)
@@ -212,14 +223,22 @@ def fill_rewards(
     v_table, q_table = value_tables(d.max(), gamma, failure)
     gather(moves, d, s, q_table, q)
     log_w = beta * (q_table - (v_table if less_v else np.full_like(q_table, q_table.max())))
-    if log_w.min() < -LARGEST_EXPONENT or log_w.max() > LARGEST_EXPONENT:
+    lowest, highest = log_w.min() + log_prior.min(), log_w.max() + log_prior.max()
+    if lowest < -LARGEST_EXPONENT or highest > LARGEST_EXPONENT:
         gather(moves, d, s, log_w, r_leg)
         if by_action:
             log_over_actions(r_leg)
+        for n in range(len(goals)):
+            r_leg[n] += log_prior[n]
         exp_over_goals(r_leg)
     else:
         gather(moves, d, s, np.exp(log_w), r_leg)
         if by_action:
             over_actions(r_leg)
+        if log_prior.any():
+            for n in range(len(goals)):
+                r_leg[n] *= math.exp(log_prior[n])
         over_goals(r_leg)
+    if least < len(moves):
+        nothing_in_closed_rooms(d, r_leg)
     return least

@@ -16,6 +16,7 @@ import numpy as np
 from policies.errors import ModelError
 from policies.maze import FAILURE, Action, Maze
 from policies.mdp import Array
+from policies.priors import normalised
 from policies.solvers import check_discount, distances, goal_states
 
 Variant = Literal["as_printed", "proper_posterior", "advantage"]
@@ -35,23 +36,38 @@ class MazeSolution:
 
 
 def maze_rewards(
-    maze: Maze, gamma: float, actions: Sequence[Action], beta: float, variant: Variant
+    maze: Maze,
+    gamma: float,
+    actions: Sequence[Action],
+    beta: float,
+    variant: Variant,
+    prior: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Q*_n and r_leg of a maze, `q[n, x, a]` and `r_leg[n, x, a]` (paper eqs. 5-6, uniform prior).
+    """Q*_n and r_leg of a maze, `q[n, x, a]` and `r_leg[n, x, a]` (paper eqs. 5-6).
 
-    The same as `goal_values` and `legible_rewards`, from one table per distance.
+    The same as `goal_values` and `legible_rewards`, from one table per distance; 0 in closed
+    rooms. `prior[n]`: uniform if None.
     """
     from policies.maze_kernels import fill_rewards
 
     check_discount(gamma)
     less_v, by_action = variant != "as_printed", variant == "proper_posterior"
+    log_prior = np.log(normalised(prior, len(maze.goals)))
     # One block of memory: two are handed back to the system and fetched anew every time.
     q_and_r = np.empty((2, len(maze.goals), maze.states, len(actions)))
     reached = fill_rewards(
-        maze.successors, goal_states(maze), gamma, FAILURE, beta, less_v, by_action, q_and_r
+        maze.successors,
+        goal_states(maze),
+        gamma,
+        FAILURE,
+        beta,
+        less_v,
+        by_action,
+        log_prior - log_prior[0],
+        q_and_r,
     )
     if reached < maze.states:
-        distances(maze)  # says which
+        distances(maze)  # refuses goals without a way between them
     return q_and_r[0], q_and_r[1]
 
 
@@ -73,11 +89,12 @@ def solve_maze(maze: Maze, r: Array, gamma: float, actions: Sequence[Action]) ->
 def least_cost(maze: Maze, goal: int, cost: Array) -> Array:
     """Least expected undiscounted `cost[x, a]` >= 0 until the goal is entered, shape (S,).
 
-    Folding a failed action's self-loop leaves a graph with edges cost / .85, where taking up
-    cells best first is Dijkstra's algorithm.
+    0 in closed rooms. Folding a failed action's self-loop leaves a graph with edges cost / .85,
+    where taking up cells best first is Dijkstra's algorithm.
     """
     from policies import value_kernels
 
     least = np.empty(maze.states)
     value_kernels.least_cost(maze.successors, cost, FAILURE, goal, least)
+    least[least == np.inf] = 0
     return least

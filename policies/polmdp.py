@@ -15,6 +15,7 @@ from policies.errors import ModelError
 from policies.maze import ACTION_SETS, FAILURE, Action, Maze
 from policies.maze_solver import Variant, least_cost, maze_rewards, solve_maze
 from policies.mdp import Array, uniform_over
+from policies.priors import normalised
 from policies.solvers import shortest_path_policy, ties
 
 Formulation = Literal["reward", "cost"]
@@ -55,14 +56,16 @@ class Parameters:
 class LegiblePlan:
     """All that was computed for one goal: values, rewards, both policies, and what is proved.
 
-    `q[n, x, a]`, `r_leg[n, x, a]`, `v_legible[x]` (of the unguarded policy; an expected cost in
-    the cost formulation), `policy_optimal[x, a]`, `policy_legible[x, a]`; `repaired[x]` marks
-    the states where the guard put shortest-path actions.
+    `prior[n]` of the goals, `q[n, x, a]`, `r_leg[n, x, a]`, `v_legible[x]` (of the unguarded
+    policy; an expected cost in the cost formulation), `policy_optimal[x, a]`,
+    `policy_legible[x, a]`; `repaired[x]` marks the states where the guard put shortest-path
+    actions.
     """
 
     maze: Maze
     goal: str
     parameters: Parameters
+    prior: Array
     q: Array
     r_leg: Array
     v_legible: Array
@@ -72,12 +75,20 @@ class LegiblePlan:
     certificate: Certificate
 
 
-def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) -> LegiblePlan:
-    """Plan a legible policy for one of the maze's goals (paper, section 3)."""
+def plan_legible(
+    maze: Maze, goal: str, parameters: Parameters | None = None, prior: Array | None = None
+) -> LegiblePlan:
+    """Plan a legible policy for one of the maze's goals (paper, section 3).
+
+    `prior[n]`: what the observer believes of the goals beforehand, as weights above 0 in the
+    order of their letters (`goal_prior`); uniform if None.
+    """
     parameters = parameters or Parameters()
     n, target = maze.goal_index(goal), maze.goals[goal]
     actions = ACTION_SETS[parameters.actions]
-    q, r_leg = maze_rewards(maze, parameters.gamma, actions, parameters.beta, parameters.variant)
+    q, r_leg = maze_rewards(
+        maze, parameters.gamma, actions, parameters.beta, parameters.variant, prior
+    )
     optimal = shortest_path_policy(maze, target, actions)
     if parameters.formulation == "reward":
         solution = solve_maze(maze, r_leg[n], parameters.gamma, actions)
@@ -91,7 +102,10 @@ def plan_legible(maze: Maze, goal: str, parameters: Parameters | None = None) ->
     if parameters.guard:
         legible, repaired = guard(maze, target, legible, optimal, actions)
     certificate = certify(maze, legible, target, actions)
-    return LegiblePlan(maze, goal, parameters, q, r_leg, v, optimal, legible, repaired, certificate)
+    believed = normalised(prior, len(maze.goals))
+    return LegiblePlan(
+        maze, goal, parameters, believed, q, r_leg, v, optimal, legible, repaired, certificate
+    )
 
 
 def towards(tied: NDArray[np.bool_], optimal: Array) -> Array:
@@ -107,7 +121,10 @@ def towards(tied: NDArray[np.bool_], optimal: Array) -> Array:
 def legible_rewards(
     q: Array, beta: float, variant: Variant = "as_printed", prior: Array | None = None
 ) -> Array:
-    """r_leg[n, x, a], the observer's posterior of goal n after action a in x (paper eqs. 5-6)."""
+    """r_leg[n, x, a], the observer's posterior of goal n after action a in x (paper eqs. 5-6).
+
+    `prior[n]`: uniform if None. Of q alone: where that is 0, as in closed rooms, it is the prior.
+    """
     return np.exp(log_legible_rewards(q, beta, variant, prior))
 
 
@@ -125,9 +142,7 @@ def log_legible_rewards(
     elif variant == "advantage":
         weight = weight - weight.max(axis=2, keepdims=True)
     if prior is not None:
-        if prior.shape != q.shape[:1] or (prior <= 0).any():
-            raise ModelError(f"expected a prior above 0 for each of {len(q)} goals, came {prior}")
-        weight = weight + np.log(prior)[:, None, None]
+        weight = weight + np.log(normalised(prior, len(q)))[:, None, None]
     log_r: Array = log_softmax(weight, axis=0)
     return log_r
 
@@ -141,7 +156,7 @@ def guard(
     states at d - 1, hence at most 4 d by induction, which is less than before; so no state that
     held becomes slower. Returns the policy (S, A) and the repaired states (S,).
     """
-    repaired = ~certify(maze, policy, goal, actions).holds_at
+    repaired = certify(maze, policy, goal, actions).fails_at
     return np.where(repaired[:, None], optimal, policy), repaired
 
 
@@ -162,5 +177,7 @@ def _least_cost(
     steps = coo_array((np.ones(len(x)), (after[x, a], x)), (maze.states, maze.states))
     hops: Array = dijkstra(steps.tocsr(), unweighted=True, indices=[goal])[0]
     headway = level & ((v[after] < v[:, None]) | (hops[after] < hops[:, None]))
-    headway[goal] = tied[goal]
+    nowhere_to_go = ~maze.reaches_goal
+    nowhere_to_go[goal] = True
+    headway[nowhere_to_go] = tied[nowhere_to_go]
     return v, uniform_over(headway)

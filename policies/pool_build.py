@@ -3,14 +3,15 @@
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
-from importlib.resources import files
+from importlib.resources import as_file, files
 from typing import Any
 
 import numpy as np
 from scipy import stats
 
 from policies.errors import StimulusError
-from policies.maze import ACTION_SETS, FAILURE, Maze, format_maze, parse_maze
+from policies.maze import ACTION_SETS, FAILURE, Maze, format_maze
+from policies.maze_files import read_maze_files
 from policies.mdp import Array
 from policies.observer import OBSERVER_BETA, movement_beliefs, steps_until_sure
 from policies.pool import CONDITIONS, content_hash
@@ -67,11 +68,8 @@ def build(seed: int, progress: Callable[[str], None] = lambda _: None) -> dict[s
 
 def package_mazes() -> dict[str, Maze]:
     """The mazes that come with the package, by name."""
-    folder = files("policies").joinpath("mazes")
-    return {
-        name: parse_maze(folder.joinpath(f"{name}.txt").read_text("utf-8"), f"{name}.txt")
-        for name in (*MAZES, PRACTICE_MAZE)
-    }
+    with as_file(files("policies").joinpath("mazes")) as folder:
+        return read_maze_files(folder / f"{name}.txt" for name in (*MAZES, PRACTICE_MAZE))
 
 
 def passing(planner: Planner, name: str) -> list[Candidate]:

@@ -109,9 +109,8 @@ def generator(*key: object) -> np.random.Generator:
 
 
 def candidates(maze: Maze, name: str) -> list[Candidate]:
-    """Every start and goal of a maze where the start is no goal's cell."""
-    taken = set(maze.goals.values())
-    starts = [x for x in range(maze.states) if x not in taken]
+    """Every start and goal of a maze where the start is no goal's cell, nor in a closed room."""
+    starts = maze.free_cells.tolist()
     return [Candidate(name, x, letter) for x in starts for letter in maze.goals]
 
 

@@ -70,12 +70,20 @@ def ties(q: Array) -> NDArray[np.bool_]:
 
 
 def distances(maze: Maze) -> NDArray[np.int32]:
-    """Fewest moves from every state to every goal, shape (N, S); MazeError where no way leads."""
-    return _distances(maze, goal_states(maze))
+    """Fewest moves from every state to every goal, shape (N, S); -1 in closed rooms.
+
+    MazeError where no way leads from one goal to another.
+    """
+    d = _distances(maze, goal_states(maze))
+    between = d[:, goal_states(maze)]
+    if between.min() < 0:
+        one, other = (maze.letters[n] for n in np.argwhere(between < 0)[0])
+        raise MazeError(f"expected a way from goal {other} to {one}, found none")
+    return d
 
 
 def distances_to(maze: Maze, goal: int) -> NDArray[np.int32]:
-    """Fewest moves from every state to one, shape (S,); MazeError where no way leads."""
+    """Fewest moves from every state to one, shape (S,); -1 where no way leads."""
     d: NDArray[np.int32] = _distances(maze, np.array([goal]))[0]
     return d
 
@@ -84,12 +92,7 @@ def _distances(maze: Maze, goals: NDArray[np.int64]) -> NDArray[np.int32]:
     from policies.maze_kernels import fill_distances, moves_only
 
     d = np.empty((len(goals), maze.states), np.int32)
-    if fill_distances(moves_only(maze.successors), goals, d) < maze.states:
-        n, x = divmod(int(d.argmin()), maze.states)
-        raise MazeError(
-            f"expected cell {maze.cell(int(goals[n]))} to be reachable from every cell, "
-            f"found no way from {maze.cell(x)} (row, column)"
-        )
+    fill_distances(moves_only(maze.successors), goals, d)
     return d
 
 
@@ -98,14 +101,15 @@ def goal_values(maze: Maze, gamma: float, actions: Sequence[Action]) -> Array:
 
     The only chance in a maze is the self-loop of a failed action, so with d the distance to the
     goal and kappa = .85 gamma / (1 - .15 gamma), V_n(x) = kappa^d V_n(goal); V_n(goal) is
-    1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into).
+    1 / (1 - gamma) where the robot can stay there (no-op, or a wall to run into). In closed
+    rooms all is 0.
     """
     from policies.maze_kernels import fill_goal_values
 
     check_discount(gamma)
     q = np.empty((len(maze.goals), maze.states, len(actions)))
     if fill_goal_values(maze.successors, goal_states(maze), gamma, FAILURE, q) < maze.states:
-        distances(maze)  # says which
+        distances(maze)  # refuses goals without a way between them
     return q
 
 
@@ -128,8 +132,8 @@ def cells_after(maze: Maze, actions: Sequence[Action]) -> NDArray[np.int64]:
 def shortest_path_policy(maze: Maze, goal: int, actions: Sequence[Action]) -> Array:
     """The optimal policy of one goal, (S, A): actions that lower the distance; at the goal, stay.
 
-    Read off the distances, never off Q: far from the goal the Q values of all actions are equal
-    to machine precision.
+    Where no way leads to the goal all actions are as good. Read off the distances, never off Q:
+    far from the goal the Q values of all actions are equal to machine precision.
     """
     d = distances_to(maze, goal)
     after = cells_after(maze, actions)

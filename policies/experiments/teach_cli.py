@@ -36,13 +36,18 @@ def teach(
     Example: goalguess teach samples --predictor gradient --sets 50
     """
     with one_clear_line():
-        from policies.experiments.teaching import TeachingDesign, classroom_mazes, run_teaching
+        from policies.experiments.teaching import (
+            TeachingDesign,
+            classroom_mazes,
+            run_teaching,
+            unteachable,
+        )
         from policies.experiments.teaching_report import publish_teaching
-        from policies.maze import read_mazes
+        from policies.maze_files import read_mazes
 
         given: dict[str, Any] = {"lessons": lessons, "predictor": predictor}
         design = TeachingDesign(units=units, eta=eta, seed=seed, **given)
-        rooms = read_mazes(mazes) if mazes else classroom_mazes()
+        rooms = read_mazes(mazes, unteachable) if mazes else classroom_mazes()
         with progress_bar("Teaching") as show:
             file = run_teaching(design, rooms, out, workers, resume=resume, progress=show)
         typer.echo(publish_teaching(file, design))

@@ -19,7 +19,8 @@ import numpy as np
 from policies.errors import MazeError, ModelError
 from policies.experiments.store import Store
 from policies.irl import ACTIONS, Indices, Learner, Predictor
-from policies.maze import Maze, format_maze, read_mazes
+from policies.maze import Maze, format_maze
+from policies.maze_files import read_mazes
 from policies.mdp import Array
 from policies.polmdp import plan_legible
 from policies.pool import CONDITIONS
@@ -42,8 +43,8 @@ class TeachingDesign:
     """What is run: kind of lessons, number of units a maze, the learner, the seed.
 
     A unit is a start (a random cell without a goal) or a set of EXAMPLES random states, drawn
-    independently with replacement; its lessons are for every goal by both teachers. Starts
-    have TRAJECTORIES rollouts each, sets one draw of actions.
+    independently with replacement, none in a closed room; its lessons are for every goal by both
+    teachers. Starts have TRAJECTORIES rollouts each, sets one draw of actions.
     """
 
     lessons: Lessons
@@ -91,6 +92,16 @@ def classroom_mazes() -> dict[str, Maze]:
         return read_mazes(folder)
 
 
+def unteachable(maze: Maze) -> str | None:
+    """Why nothing can be taught in a maze, or None: two goals and a cell without one are needed."""
+    if len(maze.goals) > 1 and len(maze.free_cells):
+        return None
+    return (
+        "expected at least 2 goals and a cell without one, came "
+        f"{len(maze.goals)} goals in {maze.reaches_goal.sum()} cells"
+    )
+
+
 def run_teaching(
     design: TeachingDesign,
     mazes: Mapping[str, Maze],
@@ -106,6 +117,9 @@ def run_teaching(
     a killed run that is resumed ends with the file of an unbroken one. `progress` gets the
     units done and how many there are.
     """
+    faults = [f"{name}: {said}" for name, maze in mazes.items() if (said := unteachable(maze))]
+    if faults:
+        raise MazeError("\n".join(faults))
     rooms = [_furnish(design, name, maze) for name, maze in mazes.items()]
     store = Store(folder, design.name, _parameters(design, mazes), COLUMNS, resume=resume)
     done = store.done(KEY)
@@ -148,8 +162,9 @@ def unit_rows(design: TeachingDesign, room: Classroom, unit: int) -> list[Row]:
 def _draw_states(design: TeachingDesign, maze: Maze, rng: np.random.Generator) -> Indices:
     """A start without a goal, alone; or EXAMPLES states."""
     if design.lessons == "samples":
-        return rng.integers(maze.states, size=EXAMPLES)
-    return rng.choice(np.setdiff1d(np.arange(maze.states), list(maze.goals.values())), size=1)
+        cells = np.flatnonzero(maze.reaches_goal)
+        return cells[rng.integers(len(cells), size=EXAMPLES)]
+    return rng.choice(maze.free_cells, size=1)
 
 
 def _lesson(
@@ -164,11 +179,6 @@ def _lesson(
 
 
 def _furnish(design: TeachingDesign, name: str, maze: Maze) -> Classroom:
-    if not 2 <= len(maze.goals) < maze.states:
-        raise MazeError(
-            f"{name}: expected at least 2 goals and a cell without one, came "
-            f"{len(maze.goals)} goals in {maze.states} cells"
-        )
     plans = [plan_legible(maze, goal) for goal in maze.letters]
     policies = {
         "polmdp": [plan.policy_legible for plan in plans],

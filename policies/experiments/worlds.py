@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from policies.errors import MazeError
-from policies.maze import Maze, random_maze, read_mazes
+import numpy as np
+
+from policies.maze import Maze, random_maze
+from policies.maze_files import read_mazes
 from policies.pool_rule import generator
 
 Test = Literal["goals", "states"]
@@ -52,23 +54,31 @@ def drawn_worlds(test: Test, seed: int) -> list[World]:
 
 
 def read_worlds(folder: Path) -> list[World]:
-    """The mazes of a folder's .txt files, smallest first, each a world named by its file."""
-    worlds = [World(name, maze) for name, maze in read_mazes(folder).items()]
-    for world in worlds:
-        if world.maze.states == 1:
-            raise MazeError(
-                f"{folder / world.name}.txt: expected a cell to start from beside the goal's"
-            )
+    """The mazes of a folder's .txt files, smallest first, each a world named by its file.
+
+    MazeError names every file that is no maze or has no cell to start from beside the goal's.
+    """
+    worlds = [World(name, maze) for name, maze in read_mazes(folder, _unfit).items()]
     return sorted(worlds, key=lambda world: (world.maze.states, len(world.maze.goals)))
 
 
 def draw_pairs(world: World, count: int, seed: int) -> Sequence[Pair]:
-    """Starts and goals at random with replacement, the start never its goal's cell."""
+    """Starts and goals at random with replacement, the start never its goal's cell.
+
+    No start is in a closed room.
+    """
     rng = generator(seed, world.name, "pairs")
+    cells = np.flatnonzero(world.maze.reaches_goal)
     pairs = []
     for number in range(count):
         letter = world.maze.letters[rng.integers(len(world.maze.goals))]
-        start = int(rng.integers(world.maze.states - 1))
-        start += start >= world.maze.goals[letter]
-        pairs.append(Pair(number, start, letter))
+        i = rng.integers(len(cells) - 1)
+        i += cells[i] >= world.maze.goals[letter]
+        pairs.append(Pair(number, int(cells[i]), letter))
     return pairs
+
+
+def _unfit(maze: Maze) -> str | None:
+    if maze.states == 1:
+        return "expected a cell to start from beside the goal's"
+    return None

@@ -52,15 +52,28 @@ class TestSolve:
         solved = json.loads(to.read_text(encoding="utf-8"))
         plan = plan_legible(read_maze(maze_file), "B", parameters)
         assert solved["goals"] == ["A", "B", "C"]
+        assert solved["prior"] == [1 / 3, 1 / 3, 1 / 3]
         for key in ("q", "r_leg", "v_legible", "policy_optimal", "policy_legible"):
             assert np.array_equal(solved[key], getattr(plan, key))
         actions = 4 if parameters.actions == "udlr" else 5
         assert np.shape(solved["q"]) == np.shape(solved["r_leg"]) == (3, 20, actions)
         assert np.shape(solved["policy_legible"]) == (20, actions)
+        assert solved["reaches_goal"] == [True] * 20
         assert solved["arrives"] == plan.certificate.arrives.tolist()
         stretch = [np.inf if s is None else s for s in solved["stretch"]]
         assert stretch == plan.certificate.stretch.tolist()
-        assert len(solved) == 8
+        assert len(solved) == 10
+
+    def test_a_prior_is_divided_by_its_sum_shown_and_planned_with(self, maze_file, tmp_path):
+        to = tmp_path / "solved.json"
+        result = run("solve", maze_file, "--goal", "B", "--prior", "B=4, A=2,C=2", "--json", to)
+        assert result.exit_code == 0
+        assert "\nprior: A 0.25, B 0.5, C 0.25\n" in result.stdout
+        solved = json.loads(to.read_text(encoding="utf-8"))
+        plan = plan_legible(read_maze(maze_file), "B", prior=np.array([0.25, 0.5, 0.25]))
+        assert solved["prior"] == [0.25, 0.5, 0.25]
+        assert np.array_equal(solved["r_leg"], plan.r_leg)
+        assert np.array_equal(solved["policy_legible"], plan.policy_legible)
 
     def test_what_is_infinite_is_null(self, tmp_path, draw_maze):
         maze = draw_maze(25, 25, 3, seed=1)
@@ -82,6 +95,9 @@ class TestSolve:
             (["--goal", "A", "--formulation", "x"], "expected formulation in reward, cost"),
             (["--goal", "A", "--variant", "x"], "expected variant in"),
             (["--goal", "A", "--actions", "x"], "expected actions in udlr, udlrn"),
+            (["--goal", "A", "--prior", ""], "each letter once; came '' in ''"),
+            (["--goal", "A", "--prior", "A=1,B=2"], "each of the goals A B C, came A B"),
+            (["--goal", "A", "--prior", "A=1,B=2,C=0"], "weight above 0 for each of 3 goals"),
             (["--goal", "A", "--json", "/none/x.json"], "No such file or directory"),
         ],
     )

@@ -12,8 +12,6 @@ from policies import (
     format_maze,
     parse_maze,
     random_maze,
-    read_maze,
-    read_mazes,
 )
 
 SMALL = """\
@@ -85,6 +83,40 @@ class TestParsing:
         assert same(parse_maze(format_maze(maze)), maze)
 
 
+class TestBlanks:
+    @pytest.mark.parametrize(
+        "text",
+        [
+            f"\n  \n{SMALL}\n\n \n",
+            SMALL.replace("\n", "  \n"),
+            SMALL.replace("\n", "\t\n"),
+            "\r\n" + SMALL.replace("\n", " \r\n") + "\r\n",
+            SMALL.replace("\n", " \n", 1).rstrip(),
+        ],
+        ids=["around", "at line ends", "tabs at line ends", "of other systems", "in line 1"],
+    )
+    def test_around_a_maze_and_at_line_ends_do_not_matter(self, text):
+        assert same(parse_maze(text), parse_maze(SMALL))
+
+    def test_before_a_maze_are_counted_in_the_lines_of_errors(self):
+        assert message("\n \n" + put(4, 5, "!")).startswith("small.txt:6:5: expected '|'")
+        assert message("\n\n" + put(3, 10, "---")).startswith("small.txt:6:11: expected a way")
+        assert message("\n+---+\n").startswith("small.txt:3:1: expected an odd number of lines")
+        assert message(f"\n{SMALL}".replace("B |", "B")).startswith("small.txt:5:12: ")
+
+    @pytest.mark.parametrize("line", [1, 2, 3])
+    def test_within_a_maze_matter(self, line):
+        lines = SMALL.splitlines()
+        lines.insert(line, "")
+        assert message("\n".join(lines)).startswith("small.txt:")
+        indented = "\n".join(f" {line}" for line in lines)
+        assert message(indented).startswith("small.txt:")
+
+    def test_a_tab_is_no_opening(self):
+        said = message(put(2, 5, "\t"))
+        assert said == "small.txt:2:5: expected '|' or ' ', found '\\t'"
+
+
 class TestFaults:
     @pytest.mark.parametrize(
         ("line", "column", "sign", "expected"),
@@ -110,11 +142,13 @@ class TestFaults:
 
     def test_a_line_too_short_is_named_where_it_ends(self):
         ragged = SMALL.replace("| .   . | B |", "| .   . | B")
-        assert message(ragged) == "small.txt:4:12: expected 13 characters as in line 1, found 11"
+        wanted = "small.txt:4:12: expected 13 characters as in the first line, found 11"
+        assert message(ragged) == wanted
 
     def test_a_line_too_long_is_named_where_it_should_end(self):
-        ragged = SMALL.replace("| .   . | B |", "| .   . | B |  ")
-        assert message(ragged) == "small.txt:4:14: expected 13 characters as in line 1, found 15"
+        ragged = SMALL.replace("| .   . | B |", "| .   . | B | x")
+        wanted = "small.txt:4:14: expected 13 characters as in the first line, found 15"
+        assert message(ragged) == wanted
 
     @pytest.mark.parametrize("kept", [0, 1, 2, 4])
     def test_a_missing_line_is_named_after_the_last(self, kept):
@@ -126,12 +160,20 @@ class TestFaults:
         found = message("\n".join([border] * 3))
         assert found.startswith(f"small.txt:1:{len(border) + 1}: expected a border of '+---'")
 
-    def test_a_goal_walled_in_is_named_with_a_cell_that_is_cut_off(self):
+    def test_a_goal_walled_in_is_named(self):
         cut = put(3, 10, "---")
-        assert message(cut) == (
-            "small.txt:2:3: expected goal A to be reachable from every cell, "
-            "found no way from the cell at 4:11"
-        )
+        said = "small.txt:4:11: expected a way to goal B, found walls all around it"
+        assert message(cut) == said
+        alone = cut.replace("A", ".")
+        assert message(alone) == said
+
+    def test_a_goal_in_another_room_is_named(self):
+        apart = SMALL.replace("| A   .   . |", "| A   . | . |")
+        assert message(apart) == "small.txt:4:11: expected a way from goal B to A, found none"
+
+    @pytest.mark.parametrize("text", ["", "\n", " \n\t\n"])
+    def test_nothing_but_blanks_is_a_missing_maze(self, text):
+        assert message(text).startswith("small.txt:1:1: expected an odd number of lines")
 
     def test_a_maze_without_goals_is_refused(self):
         assert "at least one goal" in message("+---+\n| . |\n+---+\n")
@@ -142,45 +184,6 @@ class TestFaults:
     def test_a_letter_that_is_no_goal_is_answered_with_those_that_are(self):
         with pytest.raises(MazeError, match=r"a goal of the maze \(A B\), came 'C'"):
             parse_maze(SMALL).goal_index("C")
-
-
-class TestFiles:
-    def test_the_error_names_the_file(self, tmp_path):
-        path = tmp_path / "broken.txt"
-        path.write_text(put(2, 2, "-"), encoding="utf-8")
-        with pytest.raises(MazeError, match=r"broken\.txt:2:2: "):
-            read_maze(path)
-
-    def test_a_byte_order_mark_is_no_fault(self, tmp_path):
-        path = tmp_path / "marked.txt"
-        path.write_text(SMALL, encoding="utf-8-sig")
-        assert same(read_maze(path), parse_maze(SMALL))
-
-    def test_a_missing_file_is_a_maze_error(self, tmp_path):
-        with pytest.raises(MazeError, match=r"none\.txt: expected a readable file"):
-            read_maze(tmp_path / "none.txt")
-
-    def test_bytes_that_are_no_text_are_a_maze_error(self, tmp_path):
-        path = tmp_path / "bytes.txt"
-        path.write_bytes(b"\xff\xfe\x00")
-        with pytest.raises(MazeError, match="UTF-8"):
-            read_maze(path)
-
-
-class TestFolders:
-    def test_mazes_are_named_by_their_files_and_come_in_order_of_names(self, tmp_path, draw_maze):
-        drawn = {name: draw_maze(3, 4, 2, seed=i) for i, name in enumerate("bac")}
-        for name, maze in drawn.items():
-            (tmp_path / f"{name}.txt").write_text(format_maze(maze), encoding="utf-8")
-        (tmp_path / "notes.md").write_text("no maze", encoding="utf-8")
-        read = read_mazes(tmp_path)
-        assert list(read) == ["a", "b", "c"]
-        assert all(same(read[name], drawn[name]) for name in read)
-
-    @pytest.mark.parametrize("folder", [".", "missing"])
-    def test_a_folder_without_mazes_is_refused(self, tmp_path, folder):
-        with pytest.raises(MazeError, match=r"expected a folder with maze files \(\.txt\)"):
-            read_mazes(tmp_path / folder)
 
 
 class TestMoving:

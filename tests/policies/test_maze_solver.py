@@ -16,10 +16,8 @@ from policies import (
     MDP,
     Action,
     Maze,
-    MazeError,
     ModelError,
     Parameters,
-    distances,
     goal_values,
     legible_rewards,
     maze_rewards,
@@ -251,10 +249,3 @@ class TestPlans:
         one, other = plan_legible(maze, "A", how), plan_legible(renamed, "A", how)
         assert other.v_legible == pytest.approx(one.v_legible, abs=1e-12)
         assert np.array_equal(other.policy_legible, one.policy_legible)
-
-
-class TestDistances:
-    def test_a_goal_that_cannot_be_reached_is_an_error(self):
-        cut = Maze(1, 3, {"A": 0}, np.array([[False, True]]), np.zeros((0, 3), bool))
-        with pytest.raises(MazeError, match=r"cell \(0, 0\) .* no way from \(0, 2\)"):
-            distances(cut)

@@ -91,7 +91,7 @@ class TestPosterior:
 
     @pytest.mark.parametrize("prior", [[1.0], [1.0, 0.0], [1.0, -1.0]])
     def test_a_prior_is_above_zero_for_each_goal(self, prior):
-        with pytest.raises(ModelError, match="prior above 0 for each of 2 goals"):
+        with pytest.raises(ModelError, match="weight above 0 for each of 2 goals"):
             legible_rewards(np.zeros((2, 3, 5)), 0.5, prior=np.array(prior))
 
 

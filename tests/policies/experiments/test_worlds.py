@@ -1,3 +1,4 @@
+import hashlib
 from collections import Counter
 
 import numpy as np
@@ -39,8 +40,10 @@ def test_a_folder_of_mazes_is_read_smallest_first(tmp_path):
 
 
 def test_a_maze_needs_a_cell_to_start_from(tmp_path):
-    (tmp_path / "cell.txt").write_text("+---+\n| A |\n+---+\n", encoding="utf-8")
-    with pytest.raises(MazeError, match=r"cell\.txt: expected a cell to start from"):
+    for name in ("cell", "room"):
+        (tmp_path / f"{name}.txt").write_text("+---+\n| A |\n+---+\n", encoding="utf-8")
+    said = r"cell\.txt: expected a cell to start from .*\n.*room\.txt: expected a cell to start"
+    with pytest.raises(MazeError, match=said):
         read_worlds(tmp_path)
 
 
@@ -54,6 +57,22 @@ class TestPairs:
         assert len(counts) == 10
         # Each is expected 600 times, with a standard deviation of 23.
         assert all(500 < count < 700 for count in counts.values())
+
+    @pytest.mark.parametrize(
+        ("test", "digest"),
+        [
+            ("goals", "d27f93223be3940349d023a7ff99e0a7183903afa4505e05a1c05117117ce2d2"),
+            ("states", "b6e9594d11c2acd80dec4dd9ef8330bbb2e013f7e78f2ef96e202d2f10045a91"),
+        ],
+    )
+    def test_are_those_that_were_drawn_before_closed_rooms_were_allowed(self, test, digest):
+        """SHA-256 of the default run's 250 pairs a world, as the code of that time drew them."""
+        lines = [
+            f"{world.name} {pair.number} {pair.start} {pair.goal}\n"
+            for world in drawn_worlds(test, 2209)
+            for pair in draw_pairs(world, 250, 2209)
+        ]
+        assert hashlib.sha256("".join(lines).encode()).hexdigest() == digest
 
     def test_a_longer_list_begins_with_a_shorter_one(self):
         world = World("w", random_maze(5, 5, 3, np.random.default_rng(4)))
