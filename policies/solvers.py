@@ -84,7 +84,7 @@ def _distances(maze: Maze, goals: NDArray[np.int64]) -> NDArray[np.int32]:
     from policies.maze_kernels import fill_distances, moves_only
 
     d = np.empty((len(goals), maze.states), np.int32)
-    if fill_distances(moves_only(maze.successors), goals, d) < maze.states:
+    if fill_distances(moves_only(maze.successors), goals, d)[0] < maze.states:
         n, x = divmod(int(d.argmin()), maze.states)
         raise MazeError(
             f"expected cell {maze.cell(int(goals[n]))} to be reachable from every cell, "
