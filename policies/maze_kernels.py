@@ -1,7 +1,7 @@
 """Compiled loops for distances in a maze and what follows from them: Q* and legible rewards.
 
-`after[x, a]` is the cell that action a leads to when it does not fail; `moves[x, a]` has of them
-the four moves. Cells and places in tables are unsigned where they index: numba then leaves out the
+`after[x, a]` is the cell that action a leads to when it does not fail; `moves[x, a]` are the first
+four of them. Cells and places in tables are unsigned where they index: numba then leaves out the
 question whether an index counts from the end, which would take a third of the time.
 """
 
@@ -51,13 +51,18 @@ def moves_only(after: Integers) -> Integers:
 
 
 @njit(cache=True, nogil=True)
-def fill_distances(moves: Integers, goals: Integers, d: Integers) -> int:
-    """Write the fewest moves to goal n into `d[n, x]`; the least number of cells that reach one."""
+def fill_distances(moves: Integers, goals: Integers, d: Integers) -> tuple[int, int]:
+    """Write the fewest moves to goal n into `d[n, x]`.
+
+    Returns the least number of cells that reach a goal, and the largest distance.
+    """
     order = np.empty(len(moves) + 1, np.int32)
-    least = len(moves)
+    least, farthest = len(moves), 0
     for n in range(len(goals)):
-        least = min(least, breadth_first(moves, goals[n], d[n], order))
-    return least
+        reached = breadth_first(moves, goals[n], d[n], order)
+        least = min(least, reached)
+        farthest = max(farthest, d[n, order[reached - 1]])
+    return least, farthest
 
 
 @njit(cache=True, nogil=True)
@@ -90,6 +95,21 @@ def value_tables(farthest: int, gamma: float, failure: float) -> tuple[Array, Ar
                 v[s, place(k, onwards)] = by_distance[k]
                 q[s, place(k, onwards)] = r + gamma * later
     return v, q
+
+
+@njit(cache=True, nogil=True)
+def log_weights(v: Array, q: Array, beta: float, less_v: bool) -> tuple[Array, float]:
+    """beta Q or, if `less_v`, beta (Q - V), by place; and the largest distance from 0.
+
+    Q is taken from its largest value, which every goal's posterior has in common.
+    """
+    log_w, largest = np.empty_like(q), 0.0
+    top = q[1, place(0, 0)]
+    for s in range(2):
+        for i in range(q.shape[1]):
+            log_w[s, i] = beta * (q[s, i] - (v[s, i] if less_v else top))
+            largest = max(largest, abs(log_w[s, i]))
+    return log_w, largest
 
 
 @njit(cache=True, nogil=True)
@@ -138,13 +158,15 @@ def over_actions(w: Array) -> None:
 @njit(cache=True, nogil=True)
 def over_goals(w: Array) -> None:
     """Normalise weights `w[n, x, a]` over goals, in place."""
-    flat = w.reshape(len(w), -1)
-    total = flat[0].copy()
-    for n in range(1, len(w)):
-        total += flat[n]
+    N, S, A = w.shape
+    flat, total = w.reshape(N, S * A), np.zeros(S * A)
+    for n in range(N):
+        for i in range(S * A):
+            total[i] += flat[n, i]
     share = 1 / total
-    for n in range(len(w)):
-        flat[n] *= share
+    for n in range(N):
+        for i in range(S * A):
+            flat[n, i] *= share[i]
 
 
 @njit(cache=True, nogil=True)
@@ -191,8 +213,8 @@ def fill_goal_values(
 ) -> int:
     """Write Q*_n into `q[n, x, a]`; the least number of cells that reach a goal."""
     moves, d = moves_only(after), np.empty(q.shape[:2], np.int32)
-    least = fill_distances(moves, goals, d)
-    table = value_tables(d.max(), gamma, failure)[1]
+    least, farthest = fill_distances(moves, goals, d)
+    table = value_tables(farthest, gamma, failure)[1]
     gather(moves, d, can_stay(moves, goals, q.shape[2]), table, q)
     return least
 
@@ -218,13 +240,12 @@ def fill_rewards(
     """
     q, r_leg = q_and_r[0], q_and_r[1]
     moves, d = moves_only(after), np.empty(q.shape[:2], np.int32)
-    least = fill_distances(moves, goals, d)
+    least, farthest = fill_distances(moves, goals, d)
     s = can_stay(moves, goals, q.shape[2])
-    v_table, q_table = value_tables(d.max(), gamma, failure)
+    v_table, q_table = value_tables(farthest, gamma, failure)
     gather(moves, d, s, q_table, q)
-    log_w = beta * (q_table - (v_table if less_v else np.full_like(q_table, q_table.max())))
-    lowest, highest = log_w.min() + log_prior.min(), log_w.max() + log_prior.max()
-    if lowest < -LARGEST_EXPONENT or highest > LARGEST_EXPONENT:
+    log_w, largest = log_weights(v_table, q_table, beta, less_v)
+    if largest + np.abs(log_prior).max() > LARGEST_EXPONENT:
         gather(moves, d, s, log_w, r_leg)
         if by_action:
             log_over_actions(r_leg)

@@ -46,7 +46,7 @@ def optimise(after: Integers, r: Array, gamma: float, failure: float, v: Array, 
     scale = 1 / (1 - failure * gamma)
     leak = scale * (1 - gamma)
     # Any cell is good to begin from; from where values are high, fewer sweeps are needed.
-    order, to, c, stay = graph(after, r, scale, r[:, -1].argmax())
+    order, to, c, stay = graph(after, r, scale, int(r[:, -1].argmax()))
     values = start_values(to, c, stay, leak)
     best = np.empty(len(v), np.int8)
     residual = math.inf
@@ -56,7 +56,8 @@ def optimise(after: Integers, r: Array, gamma: float, failure: float, v: Array, 
         if not more:
             break
         evaluate_choice(to, c, stay, leak, best, values)
-    v[order] = values
+    for i in range(len(v)):
+        v[order[i]] = values[i]
     finite = back_up(after, r, gamma, failure, v, q)
     return residual / leak if finite else math.nan
 
@@ -68,7 +69,8 @@ def least_cost(after: Integers, cost: Array, failure: float, goal: int, v: Array
     values = np.full(len(v), -math.inf)
     values[0] = 0
     raise_values(to, c, 0.0, values)
-    v[order] = np.abs(values)
+    for i in range(len(v)):
+        v[order[i]] = abs(values[i])
 
 
 @njit(cache=True, nogil=True)
