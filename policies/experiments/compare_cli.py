@@ -5,8 +5,8 @@ from typing import Any
 
 import typer
 
+import policies.experiments.compare_options as options
 from policies.command_line import one_clear_line
-from policies.experiments import compare_options as options
 from policies.experiments.run_options import Mazes, Out, Resume, Seed, Workers, progress_bar
 
 

@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 from policies.errors import ModelError
-from policies.experiments import authors
+from policies.experiments.authors import play_and_measure
 from policies.experiments.comparison import Comparison
 from policies.experiments.frameworks import measure, play, warm_up
 from policies.experiments.parallel import as_they_finish
@@ -96,7 +96,7 @@ def play_pair(
     rows: list[dict[str, object]] = []
     for framework in frameworks:
         if comparison.preset == "authors":
-            played, measures = authors.play_and_measure(framework, maze, pair, comparison, q, r_leg)
+            played, measures = play_and_measure(framework, maze, pair, comparison, q, r_leg)
         else:
             rng = generator(comparison.seed, world.name, pair.number, framework)
             played = play(framework, maze, pair, comparison, rng)
