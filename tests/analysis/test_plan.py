@@ -7,6 +7,9 @@ from analysis.errors import AnalysisError, TomlError
 from analysis.exclusions import Exclusion
 from analysis.plan import DEFAULT_FILE, default_plan, read_plan
 
+HASH_OF_DEFAULT = "cad9258a0f4a10c18e7ea7c820ab2bde79abb2e4e96ad6cd819bc9c41a15cda8"
+HASH_OF_OWN = "9d64831860a93b38fd57f6accc0dfbd62d99d44d05da0d06c345f4fe61ffe523"
+
 
 def test_the_default_compares_the_conditions_of_the_export_as_the_statistics_ask():
     plan = default_plan()
@@ -19,6 +22,23 @@ def test_the_default_compares_the_conditions_of_the_export_as_the_statistics_ask
     assert plan.holm_family == ("correct", "prediction_time_s", "confidence")
     assert (plan.alpha, plan.time, plan.trials_per_participant) == (0.05, "penalised", 10)
     assert plan.chance_level == 1 / 6
+
+
+def test_the_default_names_smallest_effects_of_shares_and_aucs_only():
+    assert default_plan().smallest_effects == {"share": 0.05, "auc": 0.05}
+
+
+def test_a_smallest_effect_of_its_own_leaves_the_others_as_they_are(plan_of):
+    plan = plan_of("[smallest_effect]\nauc = 0.1\ns = 2")
+    assert plan.smallest_effects == {"share": 0.05, "auc": 0.1, "s": 2.0}
+    assert plan.content["smallest_effect"] == plan.smallest_effects
+
+
+def test_plans_that_name_no_smallest_effect_keep_the_hash_they_had(plan_of):
+    """Of the default plan and one of one's own, as hashed before the key was there."""
+    assert default_plan().sha256 == HASH_OF_DEFAULT
+    assert plan_of("[smallest_effect]\nshare = 0.05").sha256 == HASH_OF_DEFAULT
+    assert plan_of('alpha = 0.01\ntime = "stop"').sha256 == HASH_OF_OWN
 
 
 def test_the_default_leaves_nobody_out():
@@ -89,6 +109,8 @@ def test_covariates_are_told_in_one_order(plan_of):
         'holm_family = ["time", "confidence"]',
         "choices = 5",
         "trials_per_participant = 9",
+        "smallest_effect.share = 0.1",
+        "smallest_effect.s = 1",
         "seed = 2",
         'treatment.condition = "polmdp"',
         '[[exclusions]]\nrule = "same_guess"',
@@ -103,11 +125,18 @@ def test_every_change_of_what_is_said_changes_the_hash(plan_of, change):
     ("text", "key", "words"),
     [
         ("alpa = 0.05", "alpa", "expected one of the keys alpha, time, "),
-        ("alpha = 0", "alpha", "expected a number above 0 and below 1, got 0"),
-        ("alpha = 1.0", "alpha", "expected a number above 0 and below 1, got 1.0"),
+        ("alpha = 0", "alpha", "expected a number above 0 and below 0.5, got 0"),
+        ("alpha = 0.5", "alpha", "expected a number above 0 and below 0.5, got 0.5"),
         ("alpha = nan", "alpha", "expected a finite number, got nan"),
         ("alpha = true", "alpha", "expected a number, got True"),
         ('alpha = "small"', "alpha", "expected a number, got 'small'"),
+        ("smallest_effect = 3", "smallest_effect", "expected a table, got 3"),
+        ("smallest_effect.phi = 0.1", "smallest_effect.phi", "share, auc, s, scale_points"),
+        ("smallest_effect.share = 0", "smallest_effect.share", "above 0 and below 1, got 0"),
+        ("smallest_effect.share = 1.0", "smallest_effect.share", "above 0 and below 1, got 1.0"),
+        ("smallest_effect.auc = 0.5", "smallest_effect.auc", "above 0 and below 0.5, got 0.5"),
+        ("smallest_effect.s = 0", "smallest_effect.s", "expected a number above 0, got 0"),
+        ('smallest_effect.s = "1 s"', "smallest_effect.s", "expected a number, got '1 s'"),
         ('time = "lead_in"', "time", "expected penalised or stop, got 'lead_in'"),
         ("seed = -1", "seed", "expected a whole number of at least 0, got -1"),
         ("seed = 1.5", "seed", "expected a whole number, got 1.5"),

@@ -89,7 +89,7 @@ def test_a_second_report_replaces_the_first_and_spares_other_files(export, tmp_p
     (folder / "report.json").write_text("old")
     write_report(results, folder, silent)
     assert (folder / "notes.txt").read_text() == "mine"
-    assert json.loads((folder / "report.json").read_text())["schema_version"] == 2
+    assert json.loads((folder / "report.json").read_text())["schema_version"] == 3
 
 
 def folders_while_writing(results, folder):

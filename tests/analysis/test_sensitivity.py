@@ -27,7 +27,7 @@ def study(tmp_path, rows, left=(), plan=THREE_TRIALS):
 def test_where_everybody_completed_all_selections_agree(tmp_path):
     found = sensitivity(study(tmp_path, six_participants()))
     assert found.intention_to_treat is not None
-    assert (found.dropout.estimate, found.dropout.p) == (0, 1)
+    assert (found.dropout.estimate, found.dropout.fisher_p) == (0, 1)
     whole = found.completers["confidence"]
     assert whole is not None
     assert whole.estimate == found.intention_to_treat["confidence"].estimate

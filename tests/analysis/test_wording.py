@@ -42,9 +42,14 @@ def test_a_printed_p_falls_on_its_side_of_the_plans_alpha(p, alpha):
 
 @pytest.mark.parametrize(
     ("p", "alpha", "printed"),
-    [(0.0098, 0.01, "p = .0098"), (0.0248, 0.025, "p = .0248"), (0.0497, 0.01, "p = .050")],
+    [
+        (0.0098, 0.01, "p = .0098"),
+        (0.0248, 0.025, "p = .0248"),
+        (0.0248, 0.01, "p = .025"),
+        (0.0497, 0.01, "p = .0497"),
+    ],
 )
-def test_digits_are_added_next_to_the_plans_alpha_only(p, alpha, printed):
+def test_digits_are_added_next_to_the_plans_alpha_and_that_of_intervals_only(p, alpha, printed):
     assert format_p(p, alpha=alpha) == printed
 
 

@@ -20,7 +20,7 @@ def report(paper):
 
 
 def test_it_is_keyed_by_measure_and_method(report):
-    assert report["schema_version"] == 2
+    assert report["schema_version"] == 3
     assert list(report["measures"]) == ["correct", "prediction_time_s", "confidence"]
     assert {"two_way_difference", "crossed_logistic", "gee_logistic", "chi_square"} <= set(
         report["measures"]["correct"]["methods"]

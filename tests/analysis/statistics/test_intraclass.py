@@ -24,7 +24,7 @@ def test_f_is_that_of_statsmodels_nested_models(paper_fixture):
     arms = np.column_stack([trials.treated, ~trials.treated]).astype(float)
     by_participant, by_arm = (OLS(trials.y, x).fit() for x in (participants, arms))
     f, p, df = by_participant.compare_f_test(by_arm)
-    assert (found.statistic, found.p) == pytest.approx((f, p))
+    assert (found.statistic, found.p) == pytest.approx((f, 2 * p))
     assert found.df == (df, 1350)
     assert found.estimate == pytest.approx((f - 1) / (f + 9))
 
@@ -44,6 +44,16 @@ def test_searles_interval_ends_where_f_is_at_its_quantiles(paper_fixture):
     for bound, quantile in ((found.low, 0.975), (found.high, 0.025)):
         ratio = (1 + 9 * bound) / (1 - bound)
         assert found.statistic / ratio == pytest.approx(stats.f.ppf(quantile, *found.df))
+
+
+def test_p_is_of_the_interval_also_where_trials_are_less_alike_than_by_chance():
+    """scipy's F: each participant has one value of each kind, so F is below its 2.5 % quantile."""
+    participant = np.repeat(np.arange(8), 2)
+    y = np.tile([0.0, 1.0], 8) + 0.01 * participant
+    found = defined(intraclass_correlation(outcome(y, participant < 4, participant, participant)))
+    assert found.high < 0
+    assert found.p == pytest.approx(2 * stats.f.cdf(found.statistic, 6, 8))
+    assert found.p < 0.05
 
 
 def two_trials_each_in_the_reference_arm(data):

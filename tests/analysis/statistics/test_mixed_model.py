@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 from scipy import integrate, stats
-from scipy.special import expit
+from scipy.special import expit, logit
 
 from analysis import EmptyArmError
+from analysis.statistics.clustered import clustered_difference
 from analysis.statistics.crossed_fit import CrossedModel
-from analysis.statistics.mixed_model import crossed_logistic
+from analysis.statistics.mixed_model import crossed_logistic, participant_logistic
 from analysis.statistics.ordinal_mixed import crossed_ordinal
 from analysis.statistics.outcome import Outcome
 from tests.analysis.statistics.cases import defined, holds
@@ -137,10 +138,94 @@ def test_variances_estimated_as_0_leave_the_standard_error_of_logistic_regressio
     assert found.se == pytest.approx(other.bse[1], abs=1e-6)
     assert found.warnings == ("zero_variance",)
     low, high = 7 / 12, 9 / 12
-    se = math.sqrt((low * (1 - low) + high * (1 - high)) / 144)
     assert found.risk_difference == pytest.approx(high - low, abs=1e-6)
-    half = stats.t.ppf(0.975, 11) * se
-    assert found.risk_difference_high - found.risk_difference == pytest.approx(half, abs=1e-6)
+    # where the log odds ratio is at a bound, each arm's logit moves as it has part in the variance
+    parts = np.array([1 / (high * (1 - high)), -1 / (low * (1 - low))])
+    parts /= np.abs(parts).sum()
+    for bound, expected in (
+        (found.low, found.risk_difference_low),
+        (found.high, found.risk_difference_high),
+    ):
+        arms = expit(logit([high, low]) + parts * (bound - found.estimate))
+        assert expected == pytest.approx(arms[0] - arms[1], abs=1e-6)
+
+
+def test_the_interval_of_the_risk_difference_is_that_of_the_odds_ratio_carried_over(paper_fixture):
+    """R glmmTMB 1.1.5 on synthetic trials.
+
+    d$x <- ifelse(d$condition == "polmdp", .5, -.5); d$jc <- interaction(d$video, d$condition)
+    m <- glmmTMB(correct ~ x + (1 | participant) + (1 | video) + (1 | jc), d, binomial)
+    fixef(m)$cond; exp(m$fit$par[3:5]); vcov(m, full = TRUE)[, 2]
+    """
+    location, effect = 1.45893157, 0.993889823
+    sds = np.array([0.587528544, 0.495178019, 0.241752479])
+    with_effect = np.array(
+        [-0.00116530506, 0.0340597202, 0.00372284529, 0.000687979645, 0.0169569077]
+    )  # the last three with logs of sds
+    found = defined(crossed_logistic(of_fixture(paper_fixture, "correct")))
+    for bound, expected in (
+        (found.low, found.risk_difference_low),
+        (found.estimate, found.risk_difference),
+        (found.high, found.risk_difference_high),
+    ):
+        moved = (bound - effect) * with_effect / with_effect[1]
+        sd = np.linalg.norm(sds * (1 + moved[2:]))
+        treatment, reference = (
+            integrate.quad(
+                lambda z, eta=location + moved[0] + half, sd=sd: (
+                    expit(eta + sd * z) * stats.norm.pdf(z)
+                ),
+                -9,
+                9,
+            )[0]
+            for half in (bound / 2, -bound / 2)
+        )
+        assert expected == pytest.approx(treatment - reference, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", [113, 189, 239, 314])
+def test_the_risk_difference_excludes_0_only_if_the_odds_ratio_excludes_1(seed):
+    """By the delta method its interval excluded 0 here, beside p from .051 to .056."""
+    found = defined(crossed_logistic(made(seed, effect=1.0)))
+    assert found.p > 0.05
+    assert found.low < 0 < found.high
+    assert found.risk_difference_low < 0 < found.risk_difference < found.risk_difference_high
+
+
+def test_golden_logistic_of_participants_only(paper_fixture):
+    """R glmmTMB 1.1.5 on synthetic trials.
+
+    d$x <- as.numeric(d$condition == "polmdp")
+    m <- glmmTMB(correct ~ x + (1 | participant), d, binomial); m0 the same without x
+    fixef(m); sqrt(diag(vcov(m)$cond)); VarCorr(m); logLik(m); 2 * (logLik(m) - logLik(m0))
+    """
+    data = of_fixture(paper_fixture, "correct")
+    found = defined(participant_logistic(data))
+    assert (found.intercept, found.estimate) == pytest.approx(
+        (0.884568483642, 0.941580239799), abs=2e-6
+    )
+    assert found.se == pytest.approx(0.164301936398, abs=2e-6)
+    assert found.sd_participant == pytest.approx(0.537805876314, abs=2e-6)
+    assert found.log_likelihood == pytest.approx(-729.644322263, abs=1e-6)
+    assert found.likelihood_ratio == pytest.approx(30.4922351841, abs=1e-6)
+    assert (found.sd_scenario, found.sd_scenario_in_arm, found.warnings) == (None, None, ())
+    assert found.df == clustered_difference(data).df
+
+
+def test_the_model_of_participants_does_not_ask_for_scenarios():
+    data = made(12)
+    one = dataclasses.replace(data, scenario=np.zeros_like(data.scenario))
+    assert participant_logistic(one) == participant_logistic(data)
+    few = participant_logistic(made(12, scenarios=8, trials=6))
+    assert "few_clusters" not in few.warnings
+    many = dataclasses.replace(data, scenario=np.arange(len(data.y)) * 7)
+    assert participant_logistic(many) == participant_logistic(data)
+
+
+def test_of_participants_with_a_trial_each_the_model_says_that_nothing_is_random():
+    data = made(13)
+    found = participant_logistic(dataclasses.replace(data, participant=np.arange(len(data.y))))
+    assert (found.sd_participant, found.warnings) == (None, ("single_trials",))
 
 
 def test_the_risk_difference_averages_over_participants_and_scenarios():

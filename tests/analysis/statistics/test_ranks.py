@@ -12,7 +12,12 @@ from scipy import stats
 
 from analysis import EmptyArmError
 from analysis.statistics.estimates import mean
-from analysis.statistics.ranks import brunner_munzel, hodges_lehmann, mann_whitney
+from analysis.statistics.ranks import (
+    brunner_munzel,
+    hodges_lehmann,
+    mann_whitney,
+    mann_whitney_exact_if_few,
+)
 from tests.analysis.statistics.cases import holds
 from tests.analysis.statistics.outcomes import of_fixture
 
@@ -201,6 +206,31 @@ def test_without_ties_the_exact_p_is_scipys():
     x, y = np.random.default_rng(4).normal(size=(2, 30))
     expected = stats.mannwhitneyu(x, y, method="exact").pvalue
     assert mann_whitney(x, y).p_exact == pytest.approx(expected)
+
+
+def test_few_values_without_ties_are_tested_exactly():
+    """R 4.2.2: wilcox.test(x, y)$p.value; apart, 2 of the choose(6, 3) = 20 relabellings."""
+    apart = mann_whitney_exact_if_few([4, 5, 6], [1, 2, 3], of="participants")
+    assert apart.p == pytest.approx(0.1, abs=1e-15)
+    assert (apart.symbol, apart.statistic) == ("U", 9)
+    assert apart.method == "Mann-Whitney, two-sided, exact, on participants, few and without ties"
+    x, y = [3.1, 4.7, 5.2, 6.9, 8.8, 9.3], [1.2, 2.5, 2.9, 4.1, 5.0]
+    assert mann_whitney_exact_if_few(x, y).p == pytest.approx(0.0303030303030303)
+
+
+@pytest.mark.parametrize(
+    ("x", "y"), [([4, 5, 6], [1, 2, 4]), (range(50), np.arange(3) + 0.5), ([2, 2], [2])]
+)
+def test_with_ties_or_50_values_in_an_arm_the_test_stays_asymptotic(x, y):
+    found = mann_whitney_exact_if_few(x, y)
+    assert found == mann_whitney(x, y)
+    assert "normal approximation" in found.method
+
+
+def test_up_to_49_values_in_an_arm_the_test_is_exact():
+    found = mann_whitney_exact_if_few(range(49), np.arange(49) + 0.5)
+    assert "exact" in found.method
+    assert found.p == pytest.approx(found.p_exact)
 
 
 def test_from_50_values_in_an_arm_there_is_no_exact_p():
