@@ -28,7 +28,7 @@ _OF = ("i", "im", "am", "a", "an", "the", "of", "from", "national", "nationality
 _FILLERS = frozenset((*_AND, *_OF, "citizenship", "passport", "dual", "half", "white", "black"))
 """Words that name no place; "and" in six languages, since names are parted by blanks as well."""
 _CODES = ("alpha_2", "alpha_3")
-_AMBIGUOUS_CODES = frozenset(("na", "no", "sa"))
+AMBIGUOUS_CODES = frozenset(("na", "no", "sa"))
 """Namibia or no answer, Norway or no answer, Saudi Arabia or South Africa."""
 _WHOLE_LETTERS = str.maketrans(
     {"ł": "l", "ø": "o", "đ": "d", "ð": "d", "ı": "i", "æ": "ae", "þ": "th", "ə": "e"}
@@ -86,7 +86,7 @@ def _regions_by_name() -> dict[str, str]:
 @cache
 def _places_by_code() -> dict[str, str]:
     codes = ((row[key].casefold(), row["place"]) for row in places() for key in _CODES)
-    return {code: place for code, place in codes if code and code not in _AMBIGUOUS_CODES}
+    return {code: place for code, place in codes if code and code not in AMBIGUOUS_CODES}
 
 
 def _words(text: str) -> list[str]:

@@ -40,6 +40,7 @@ def test_the_wheel_holds_templates_static_files_mazes_stimuli_and_migrations(whe
     assert "app/consent.txt" in names
     assert "policies/stimuli/pool.json" in names
     assert "analysis/plan.toml" in names
+    assert "analysis/nationalities.csv" in names
     assert sum(name.startswith("policies/mazes/") for name in names) == 5
     assert not any(name.startswith("tests/") for name in names)
 

@@ -66,7 +66,7 @@ def _table(grid: Grid) -> str:
     )
     rows = (
         f'<tr><th scope="row">{_text(first)}</th>'
-        + "".join(f"<td>{_lines(text)}</td>" for text in others)
+        + "".join(f"<td>{_text(text)}</td>" for text in others)
         + "</tr>"
         for first, *others in grid.rows
     )
@@ -80,10 +80,6 @@ def _table(grid: Grid) -> str:
 
 def _text(text: str) -> str:
     return _WHOLE.sub(r'<span class="whole">\g<0></span>', escape(text, quote=False))
-
-
-def _lines(text: str) -> str:
-    return _text(text).replace("\n", "<br>")
 
 
 def _anchor(text: str) -> str:

@@ -13,7 +13,7 @@ from ..statistics.result import TestResult
 from ..warning_texts import WARNINGS
 from ..wording import capital, format_p
 from .answers import WORDS
-from .document import NOTHING, Grid, Heading, Items, Paragraph, Part
+from .document import Grid, Heading, Items, Paragraph, Part
 from .effects import beyond, effect_of, interval
 
 _TOO_MANY = f"Left out, since it takes too long above {MOST_TRIALS:,} trials."
@@ -111,10 +111,10 @@ def _cell(test: TestResult | None, tested_by: Plan | None = None) -> str:
     if test is None:
         return _NO_VALUE
     if test.estimate is None:
-        return NOTHING
+        return "not defined"
     bounds = "no interval" if test.low is None else interval(test)
     told = f"{effect_of(test).write(test.estimate)}\n({bounds})"
-    if tested_by is None:
+    if tested_by is None or test.p is None:
         return told
     return f"{told},\n{format_p(test.p, alpha=tested_by.alpha)}"
 

@@ -153,6 +153,26 @@ def test_demographics_describe_the_age_of_those_who_told_it(tmp_path):
     assert (found.age["overall"].n, found.age["overall"].n_missing) == (3, 3)
 
 
+def test_world_regions_follow_from_nationalities_and_sum_to_everybody(tmp_path):
+    told = ["Portuguese", "UK", "prefer not to say", "portugal ", "US/UK", "Klingon"]
+    found = study_of(tmp_path, [{"nationality": nationality} for nationality in told])
+    assert [(row.answer, tuple(row.counts.values())) for row in found.regions] == [
+        ("Europe", (2, 1, 3)),
+        ("several", (0, 1, 1)),
+        ("not recognised", (0, 1, 1)),
+        ("not told", (1, 0, 1)),
+    ]
+    for group, participants in found.n.items():
+        assert sum(row.counts[group] for row in found.regions) == participants
+    assert len(found.answers["nationality"]) == 6
+
+
+def test_what_is_no_region_stands_last_however_frequent_it_is(tmp_path):
+    told = ["Klingon", "Klingon", "UK", None, None, None]
+    found = study_of(tmp_path, [{"nationality": nationality} for nationality in told])
+    assert [row.answer for row in found.regions] == ["Europe", "not recognised", "not told"]
+
+
 def test_an_arm_without_any_confidence_is_a_structured_error(tmp_path):
     rows = [
         {
