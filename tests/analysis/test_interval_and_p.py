@@ -15,7 +15,7 @@ from analysis.reporting.effects import bracketed, effect_of, estimate_cell, inte
 from analysis.reporting.method_tables import in_shares
 from analysis.statistics.calibration import discrimination
 from analysis.statistics.chance import against_chance
-from analysis.statistics.cox import clustered_cox
+from analysis.statistics.cox import clustered_cox, two_way_cox
 from analysis.statistics.dropout import differential_dropout
 from analysis.statistics.intraclass import (
     intraclass_correlation,
@@ -57,16 +57,15 @@ def results(seed, effect) -> Iterator[tuple[str, TestResult]]:
             yield f"{key} of {data.name}", found
             if isinstance(found, CrossedLogistic) and found.risk_difference is not None:
                 yield f"{key} in shares", in_shares(found)
-    ends = stops(
-        time.y, np.full(len(time.y), 12.0), correct.y, correct.treated, correct.participant
-    )
+    clusters = (correct.treated, correct.participant, correct.scenario)
+    ends = stops(time.y, np.full(len(time.y), 12.0), correct.y, *clusters)
     yield "Cox", clustered_cox(ends)
+    yield "two-way Cox", two_way_cox(ends)
     yield "likeness", intraclass_correlation(correct)
     yield "likeness of ranks", intraclass_correlation_of_ranks(confidence)
-    for arm, test in enumerate(against_chance(correct, 1 / 6)):
-        yield f"chance of arm {arm}", test
-    for arm, test in enumerate(discrimination(correct, confidence.y)):
-        yield f"discrimination of arm {arm}", test
+    yield from zip(("chance, treatment", "reference"), against_chance(correct, 1 / 6), strict=True)
+    for arm, auc in enumerate(discrimination(correct, confidence.y)):
+        yield f"discrimination of arm {arm}", auc
     done = np.bincount(correct.participant, correct.y) > 1
     yield "dropout", differential_dropout(np.arange(len(done)) % 2 == 0, done)
 

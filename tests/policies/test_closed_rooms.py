@@ -153,7 +153,7 @@ class TestValues:
         x, a = np.nonzero(after != np.arange(30)[:, None])
         edges = coo_array((cost[x, a] / (1 - FAILURE), (after[x, a], x)), (30, 30))
         wanted = bellman_ford(edges.tocsr(), indices=[maze.goals["A"]])[0]
-        v = least_cost(maze, maze.goals["A"], cost, ACTION_SETS[names])
+        v = least_cost(maze, maze.goals["A"], cost)
         assert v[room] == pytest.approx(wanted[room])
         assert (v[~room] == 0).all()
 
@@ -180,10 +180,12 @@ class TestPlans:
         st.sampled_from([(0.5, 0.9), (0.5, 0.3), (50.0, 0.99)]),
     )
     def test_are_certified_from_every_start_that_reaches_the_goal(
-        self, seed, formulation, variant, names, how
+        self, seed, formulation, variant, names, beta_and_gamma
     ):
+        beta, gamma = beta_and_gamma
         maze, room = random_rooms(6, 7, 3, np.random.default_rng(seed))
-        plan = plan_legible(maze, "B", Parameters(*how, formulation, variant, names, guard=True))
+        how = Parameters(beta, gamma, formulation, variant, names, guard=True)
+        plan = plan_legible(maze, "B", how)
         for policy in (plan.policy_legible, plan.policy_optimal):
             assert policy.sum(axis=1) == pytest.approx(np.ones(42))
         assert (plan.v_legible[~room] == 0).all()
@@ -295,7 +297,7 @@ class TestCommands:
         rows = pl.read_csv(tmp_path / "out" / "states.csv")
         assert rows.height == 18
         assert not set(rows["start"]) & set(CLOSED)
-        assert rows["distance"].min() > 0
+        assert (rows["distance"] > 0).all()
 
     @pytest.mark.parametrize("predictor", ["bayes", "gradient"])
     @pytest.mark.parametrize("lessons", [("samples", "--sets"), ("sequences", "--starts")])

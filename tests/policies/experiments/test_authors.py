@@ -103,7 +103,7 @@ class TestByPlainPython:
         assert (row["polmdp"], row["lmdp"]) == pytest.approx(plain.measures(states, taken))
 
     def test_that_search_has_1000_samples_of_depth_20(self):
-        """No return ends before its depth in a corridor; what is drawn next tells how many draws were."""
+        """No return ends early in a corridor; what is drawn next tells how many draws were."""
         corridor = "+---" * 24 + "+\n| A   B " + "  . " * 22 + "|\n" + "+---" * 24 + "+\n"
         rng, plains = np.random.default_rng(2021), np.random.default_rng(2021)
         taken = authors.search_once_more(parse_maze(corridor), "A", 23, rng)
