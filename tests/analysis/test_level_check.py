@@ -53,8 +53,8 @@ def test_the_level_of_models_is_checked_too():
 
 
 def test_every_primary_test_of_a_plan_is_there_for_each_measure():
-    for tests in TESTS.values():
-        assert {two_way_difference, two_way_auc} <= set(tests.values())
+    for measure in ("correct", "confidence"):
+        assert {two_way_difference, two_way_auc} <= set(TESTS[measure].values())
 
 
 def test_of_correct_guesses_difference_and_auc_are_one_test():
