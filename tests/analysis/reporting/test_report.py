@@ -204,8 +204,8 @@ def test_sentences_for_a_manuscript_are_whole_sentences(paper):
     assert (
         "Confidence: mean 6.08 with PoLMDP, 5.78 with optimal, AUC = .546, 95 % CI [.492, .600], "
         "t(36) = 1.74, p = .091, Holm-corrected p = .091 (PoLMDP against optimal; trials "
-        "clustered by participant and scenario). An AUC of .45 or less, or of .55 or more, cannot be "
-        "excluded (two one-sided tests at alpha = .05, of this measure alone: p = .445; 90 % "
+        "clustered by participant and scenario). An AUC of .45 or less, or of .55 or more, cannot "
+        "be excluded (two one-sided tests at alpha = .05, of this measure alone: p = .445; 90 % "
         "interval .501 to .591)."
     ) in sentences
 
